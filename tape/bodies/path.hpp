@@ -1,0 +1,36 @@
+#pragma once
+#include "tape/core/types.hpp"
+#include "tape/math/rotation.hpp"
+
+namespace tape {
+/// What moves a vertex. `block` is its first 3-block of unknowns, -1 if it is fixed; `body` the rigid body that carries it,
+/// -1 if the vertex is itself an unknown. A rigid body has two blocks: translation, then rotation about its centre.
+struct VertexOwner {
+  int block = -1;
+  int body = -1;
+};
+
+/// A vertex over a trial step: x(t) = centre + exp(t spin) arm + t velocity, t in [0, 1]. Free vertices have no arm.
+struct VertexPath {
+  Vec3 centre;    ///< [m]
+  Vec3 velocity;  ///< [m] per whole step
+  Vec3 arm;       ///< [m]
+  Vec3 spin;      ///< [rad] per whole step
+  TAPE_HD Vec3 at(Real t) const { return centre + t * velocity + (straight() ? arm : rotate(t * spin, arm)); }
+  TAPE_HD bool straight() const { return spin.x() == 0 && spin.y() == 0 && spin.z() == 0; }
+};
+
+/// Paths of all vertices along a direction of the unknowns.
+struct PathView {
+  Span<const Vec3> x;              ///< [nv] m, where the paths start
+  Span<const VertexOwner> owner;   ///< [nv]
+  Span<const Vec3> direction;      ///< [nb] m and rad
+  Span<const Vec3> body_position;  ///< [bodies] m, centre of mass
+  TAPE_HD VertexPath operator[](int v) const {
+    const VertexOwner o = owner[v];
+    if (o.block < 0) return {x[v], Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+    if (o.body < 0) return {x[v], direction[o.block], Vec3::Zero(), Vec3::Zero()};
+    return {body_position[o.body], direction[o.block], x[v] - body_position[o.body], direction[o.block + 1]};
+  }
+};
+}  // namespace tape

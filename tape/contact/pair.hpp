@@ -1,0 +1,22 @@
+#pragma once
+#include "tape/core/types.hpp"
+#include "tape/math/distance.hpp"
+
+namespace tape {
+/// Vertex against triangle (v[0]; v[1..3]) or edge against edge (v[0..1]; v[2..3]).
+enum class PairKind : int { vertex_triangle, edge_edge };
+
+/// Two surface primitives that may touch. Its constants come with it, so that effects need no tables.
+struct ContactPair {
+  int v[4];  ///< vertices
+  PairKind kind;
+  int interface;   ///< material of the first times the number of materials plus that of the second, ordered: first <= second
+  Real xi;         ///< [m]   sum of the half-thicknesses: surfaces touch at this distance
+  Real weight;     ///< [m^2] smaller of the two primitives' areas (facts: cgq)
+  Real mollifier;  ///< [m^4] edge-edge: 1e-3 |ea|^2 |eb|^2 at rest; below this squared cross product the pair fades out
+};
+
+TAPE_HD inline Closest closest(PairKind kind, const Vec3 (&x)[4]) {
+  return kind == PairKind::vertex_triangle ? closest_vertex_triangle(x) : closest_edge_edge(x);
+}
+}  // namespace tape
