@@ -1,0 +1,142 @@
+#pragma once
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tape/core/settings.hpp"
+#include "tape/model/film.hpp"
+#include "tape/model/triangle_mesh.hpp"
+
+namespace tape {
+enum class MeshPattern { same, alternating, crossed, irregular };
+constexpr auto enum_names(MeshPattern) { return std::array<std::string_view, 4>{"same", "alternating", "crossed", "irregular"}; }
+enum class Motion { fixed, driven, dynamic };
+constexpr auto enum_names(Motion) { return std::array<std::string_view, 3>{"static", "driven", "dynamic"}; }
+
+struct TimeParams {
+  Real dt = 0.01;
+  Real duration = 1;
+  template <class F>
+  void fields(F&& f) {
+    f("dt", dt, "s", Range::above(0, 1), "time step");
+    f("duration", duration, "s", Range::non_negative(), "simulated time");
+  }
+};
+
+struct ContactParams {
+  Real dhat = 0;
+  Real kappa = 1e4;
+  Real ccd_gap = 0.2;
+  Real margin = 1;
+  template <class F>
+  void fields(F&& f) {
+    f("dhat", dhat, "m", Range::non_negative(), "activation distance of the barrier; 0: that of the film");
+    f("kappa", kappa, "Pa", Range::positive(), "barrier stiffness");
+    f("ccd_gap", ccd_gap, "1", Range::above(0, 0.99), "fraction of a gap that one Newton step must leave");
+    f("margin", margin, "1", Range::non_negative(), "slack of the candidate search, in units of dhat: more finds more pairs less often");
+  }
+};
+
+/// Piece of a strip's centreline: a line if `turn` is 0, else an arc. The strip's normal turns with it.
+struct PathPiece {
+  Real length = 0;  ///< [m]
+  Real turn = 0;    ///< [rad] positive: towards the strip's normal (the backing side)
+};
+
+struct StripParams {
+  Real length = 0.1;
+  int cells_across = 6;
+  Real cell_length = 0;
+  MeshPattern pattern = MeshPattern::same;
+  Real grid_angle = 0;
+  template <class F>
+  void fields(F&& f) {
+    f("length", length, "m", Range::above(0, 100), "length of the strip");
+    f("cells_across", cells_across, "1", Range::closed(1, 1000), "cells over the width");
+    f("cell_length", cell_length, "m", Range::non_negative(), "length of a cell along the strip; 0: square cells");
+    f("pattern", pattern, "", Range::any(), "diagonals of the mesh");
+    f("grid_angle", grid_angle, "deg", Range::closed(-90, 90), "angle of the mesh's rows to the strip; needs pattern same");
+  }
+};
+
+/// A strip of tape. Flat at rest; at the start its centreline follows `path` from `pose`: x along, y across, z normal (backing).
+struct Strip {
+  std::string name = "tape";
+  int film = 0;  ///< index into Scene::films
+  StripParams mesh;
+  Pose pose;                     ///< of the start of the strip, middle of its first edge
+  std::vector<PathPiece> path;   ///< empty: straight. Shorter than the strip: goes on straight
+  Vec3 velocity = Vec3::Zero();  ///< [m/s]
+  int material = 0;              ///< index into Scene::materials
+};
+
+/// Prescribed pose at a time. Between waypoints position and rotation vector go linearly, or smoothly with `ease`.
+struct Waypoint {
+  Real time = 0;  ///< [s]
+  Pose pose;
+};
+
+/// A rigid thing. Its mesh is in its own frame, whose origin need not be the centre of mass.
+struct Body {
+  std::string name;
+  TriangleMesh mesh;
+  Motion motion = Motion::fixed;
+  Pose pose;                             ///< at the start; of the mesh's frame
+  Real density = 1000;                   ///< [kg/m^3] used where mass is 0
+  Real mass = 0;                         ///< [kg] 0: from density
+  Vec3 velocity = Vec3::Zero();          ///< [m/s] of the centre of mass
+  Vec3 angular_velocity = Vec3::Zero();  ///< [rad/s] in the world
+  std::vector<Waypoint> waypoints;       ///< of a driven body, times ascending; before the first and after the last it rests
+  Real xi = 0;                           ///< [m] half-thickness in contact
+  int material = 0;                      ///< index into Scene::materials
+};
+
+struct Material {
+  std::string name;
+  Real mu = 0.5;  ///< friction; a pair takes the geometric mean unless Scene::frictions names it
+};
+struct FrictionPair {
+  int a = 0, b = 0;  ///< materials
+  Real mu = 0;
+};
+
+/// Where a soft grip holds: vertices of a strip, or points fixed to a body.
+struct GripTarget {
+  std::string object;         ///< strip or body
+  std::vector<int> vertices;  ///< of the strip, from its own 0
+  std::vector<Vec3> points;   ///< [m] of the body, in the frame of its mesh
+};
+/// A soft grip: springs from each point of `what` to a target that moves, or to the same place on another body.
+struct Grip {
+  std::string name;
+  GripTarget what;
+  std::string to;      ///< body that the grip ties to; empty: a target moved by the script
+  Real stiffness = 0;  ///< [N/m] of the whole grip; 0: chosen from the masses that it holds
+  Real start = 0;      ///< [s]
+  Real end = 1e300;    ///< [s] released here
+  struct Key {
+    Real time;    ///< [s]
+    Vec3 offset;  ///< [m] from where the target was at the start
+  };
+  std::vector<Key> motion;  ///< times ascending, linear between; holds still before and after
+};
+
+/// Input of a simulation, plain and complete, in SI units. cosim/scene fills it from a file.
+struct Scene {
+  std::string name;
+  TimeParams time;
+  ContactParams contact;
+  Vec3 gravity = Vec3(0, 0, -9.81);  ///< [m/s^2]
+  int seed = 1;
+  std::vector<Film> films;
+  std::vector<Strip> strips;
+  std::vector<Body> bodies;
+  std::vector<Material> materials = {{"default", 0.5}};
+  std::vector<FrictionPair> frictions;
+  std::vector<Grip> grips;
+
+  Real dhat() const;            ///< [m] contact.dhat, or the smallest of the films' (1e-3 without strips)
+  Real mu(int a, int b) const;  ///< friction of two materials
+};
+}  // namespace tape
