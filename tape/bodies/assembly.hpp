@@ -1,0 +1,61 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "tape/bodies/path.hpp"
+#include "tape/model/scene.hpp"
+#include "tape/model/strip_mesh.hpp"
+
+namespace tape {
+/// Mass of a rigid body about its centre of mass.
+struct BodyMass {
+  Real mass = 0;               ///< [kg]
+  Mat3 second = Mat3::Zero();  ///< [kg m^2] sum of m y y^T in the body's frame; the inertia tensor is tr(second) I - second
+};
+
+/// A strip in the world's arrays.
+struct StripPart {
+  int film = 0;            ///< index into Scene::films
+  int first_vertex = 0;    ///< its vertices and its blocks of unknowns are consecutive
+  int first_triangle = 0;  ///< into Assembly::triangles
+  int vertices = 0, triangles = 0, columns = 0;
+};
+/// A body in the world's arrays. Frame B of a body has its origin at the centre of mass.
+struct BodyPart {
+  Motion motion = Motion::fixed;
+  int first_vertex = 0, vertices = 0;
+  int first_triangle = 0, triangles = 0;
+  int block = -1;                                                 ///< first of its two blocks, -1 if fixed
+  int centre = -1;                                                ///< vertex that marks the centre of mass, -1 if fixed
+  BodyMass mass;                                                  ///< zero unless dynamic
+  Pose start;                                                     ///< X_WB
+  Vec3 mesh_offset = Vec3::Zero();                                ///< [m] centre of mass in the frame of the mesh
+  Vec3 velocity = Vec3::Zero(), angular_velocity = Vec3::Zero();  ///< [m/s], [rad/s] at the start
+};
+
+/// The scene as arrays. Vertices: those of the strips, of the bodies, then markers (points of bodies that no surface has).
+/// Unknowns are blocks of 3: one per strip vertex, two per body that is not fixed (translation, rotation).
+struct Assembly {
+  std::vector<Vec3> x;             ///< [nv] m, at the start
+  std::vector<Vec3> v;             ///< [nv] m/s, at the start; strip vertices only
+  std::vector<Vec2> rest;          ///< [nv] m, flat rest position; strip vertices only
+  std::vector<VertexOwner> owner;  ///< [nv]
+  std::vector<Vec3> local;         ///< [nv] m, in frame B; vertices of bodies only
+  std::vector<Real> mass;          ///< [nv] kg: lumped on strip vertices (area/3 thickness density), whole body on its centre
+  std::vector<Index3> triangles;   ///< of strips, then of bodies
+  std::vector<StripPart> strips;   ///< in the order of the scene
+  std::vector<BodyPart> bodies;
+  int surface_vertices = 0;  ///< vertices below this have a surface, those from it on are markers
+  int blocks = 0;
+
+  /// Points that a grip holds, and the marker of each on the body it ties to (-1: a target moved by the script).
+  struct GripPart {
+    std::vector<int> vertices, anchors;
+    Real stiffness;  ///< [N/m] of each spring
+  };
+  std::vector<GripPart> grips;
+};
+
+/// @throws InputError naming the object if something cannot be built (open dynamic body, grip on an unknown object, ...)
+Assembly assemble(const Scene& scene);
+}  // namespace tape

@@ -1,0 +1,47 @@
+#pragma once
+#include <concepts>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tape/bodies/assembly.hpp"
+#include "tape/bodies/state_view.hpp"
+#include "tape/contact/pair.hpp"
+#include "tape/core/settings.hpp"
+#include "tape/model/scene.hpp"
+
+namespace tape {
+/// One term of the incremental potential. The type itself is a plain view that kernels take by value: a few constants and
+/// `elements`, a span that the step sets to memory of its side. Energies are in joules, before the factor dt^2 that assembly
+/// applies to all of them.
+///
+/// Optional, found by `if constexpr (requires ...)`:
+///   static constexpr bool on_blocks = true     the stencil names blocks of unknowns, not vertices: no relocation
+///   bool lag(pair, s, Element& out)            elements are made at the start of each step, from the contact pairs for which this
+///                                              returns true (s.x is s.x_start then)
+///   static constexpr bool contact_pairs = true elements are the candidates of the contact search
+///   bool active(s, i)                          false: element i contributes nothing here, gradient and Hessian skip it
+template <class T>
+concept Effect = requires(const Scene& scene, const Assembly& assembly, typename T::Params& p, std::vector<typename T::Element>& elements,
+                          const T& term, const StateView& s, int i, HessianMode mode) {
+  requires Settings<typename T::Params>;
+  { T::name } -> std::convertible_to<std::string_view>;           // key in the scene file, in timings and in every report
+  { T::needed(scene, p) } -> std::same_as<std::string>;           // what asks for it; empty: not built, launched or timed
+  { T::build(scene, assembly, p, elements) } -> std::same_as<T>;  // on the host, once per run
+  term.elements;                                                  // Span<const Element>
+  term.stencil(i);                                                // Stencil<K>
+  { term.energy(s, i) } -> std::same_as<Real>;                    // [J]
+  term.gradient(s, i);                                            // [N]   VecN<3K>
+  term.hessian(s, i, mode);                                       // [N/m] MatN<3K, 3K>
+};
+
+/// Params of an effect that has nothing to set.
+struct NoParams {
+  template <class F>
+  void fields(F&&) {}
+};
+
+/// Number of ids in the stencil of an effect.
+template <class T>
+inline constexpr int stencil_size = decltype(std::declval<const T&>().stencil(0))::size;
+}  // namespace tape
