@@ -1,0 +1,59 @@
+# make demo and make test work on a fresh Debian machine. On the command line may stand:
+#   JOBS=2          parallel jobs                     DEMO_STEPS=50   a shorter demo
+#   PRESET=ci       another preset in build/release   BASE=main       lint by clang-tidy only what changed since
+PRESET ?= release
+JOBS ?= $(shell nproc)
+BUILD := build/release
+export JOBS
+
+# One step after another: two of them may want to install packages; the jobs run inside.
+.NOTPARALLEL:
+.PHONY: all deps deps-check build demo test bench lint format tidy check-all clean
+
+all: build
+
+deps:
+	@bash cmake/deps.sh cmake/packages.txt
+
+deps-check:
+	@bash cmake/deps.sh cmake/packages.txt cmake/packages-check.txt
+
+build: deps
+	cmake --preset $(PRESET)
+	cmake --build $(BUILD) --parallel $(JOBS)
+
+demo: build
+	$(BUILD)/tapesim run data/scenes/demo.yaml --out out/demo --video $(if $(DEMO_STEPS),--steps $(DEMO_STEPS))
+
+# Suites named Long... are left to check-all.
+CTEST := ctest --output-on-failure --no-tests=error --parallel $(JOBS)
+test: build
+	$(CTEST) --test-dir $(BUILD) --label-exclude long
+
+bench: build
+	@for program in $$(find $(BUILD)/bench -type f -perm -u+x | sort); do echo "== $$program"; $$program || exit 1; done
+
+lint:
+	@bash cmake/lint.sh
+
+format:
+	clang-format -i $$(find tape robot cosim apps tests -name '*.[ch]pp' -o -name '*.inl' -o -name '*.cu')
+
+build-%: deps-check
+	cmake --preset $*
+	cmake --build build/$* --parallel $(JOBS)
+
+tidy: build-clang
+	@bash cmake/tidy.sh build/clang $(BASE)
+
+# Everything that takes too long for each change: the second compiler, the sanitizers, kernels in three shuffled orders, the
+# long suites, clang-tidy.
+check-all: deps-check lint test build-clang build-debug
+	$(CTEST) --test-dir build/clang --label-exclude long
+	$(CTEST) --test-dir build/debug --label-exclude long --exclude-regex 'Cost(/|$$)'
+	TAPE_SHUFFLE=1 $(BUILD)/tests/tests --gtest_repeat=3 --gtest_brief=1 --gtest_filter='-Long*:*/Long*:*Cost.*:*Cost/*'
+	ctest --output-on-failure --test-dir $(BUILD) --label-regex long
+	@bash cmake/tidy.sh build/clang $(BASE)
+
+clean:
+	rm -rf build
