@@ -1,0 +1,68 @@
+#pragma once
+#include <array>
+#include <atomic>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tape/step/world.hpp"
+
+namespace tape {
+enum class Backend { automatic, cpu, cuda };
+constexpr auto enum_names(Backend) { return std::array<std::string_view, 3>{"auto", "cpu", "cuda"}; }
+
+/// Time and size of one effect in a step.
+struct EffectReport {
+  std::string name;
+  Real ms = 0;
+  Real energy = 0;   ///< [J] at the end of the step; inertia: 0
+  int elements = 0;  ///< that contributed at the end of the step
+};
+/// Time of a stage of the solver in a step.
+struct StageReport {
+  std::string name;
+  Real ms = 0;
+};
+
+/// Outcome of one step: numbers, not text.
+struct StepReport {
+  bool ok = true;
+  std::string failure;  ///< what went wrong and where, if not ok
+  Real dt = 0;          ///< [s] of the whole step
+  int substeps = 1;     ///< more than 1: retried at a fraction of dt
+  int newton = 0;       ///< iterations, all substeps
+  int halvings = 0;     ///< of the line search
+  int hessian_fallbacks = 0;
+  int linear_iterations = 0;
+  int linear_failures = 0;  ///< solves that ended at their iteration limit
+  std::string linear_solver;
+  Real last_update = 0;          ///< [m] largest move of a vertex in the last Newton update, before any limit
+  Real stop_error_estimate = 0;  ///< [m] what the stop may have left on the table
+  Real min_gap = 0;              ///< [m] smallest d - xi among candidate pairs at the end; infinite without any
+  int candidates = 0, active_pairs = 0, searches = 0;
+  int ccd_capped = 0;                    ///< CCD queries that ended at their iteration limit (the step was shorter, still safe)
+  Real kinetic = 0;                      ///< [J] at the end of the step
+  Vec3 momentum = Vec3::Zero();          ///< [kg m/s] of all that moves, at the end
+  Vec3 angular_momentum = Vec3::Zero();  ///< [kg m^2/s] about the world's origin
+  Real max_strain = 0;                   ///< [1] largest principal membrane strain in magnitude
+  std::vector<EffectReport> effects;
+  std::vector<StageReport> stages;
+  std::vector<Vec3> grip_force;  ///< [grips] N that the grip exerts on what it holds
+  std::vector<Vec3> body_force;  ///< [bodies] N of contact and grips on the body (driven and dynamic)
+  Real wall_ms = 0;
+};
+
+/// Advances a state, on one back end.
+class Stepper {
+ public:
+  virtual ~Stepper() = default;
+  /// One step of setup.scene.time.dt. On failure (report.ok false) the state is the last good one.
+  virtual StepReport step(State& state) = 0;
+  /// Largest contact force [N] per surface vertex at the last state, for pictures.
+  virtual std::vector<Real> contact_force() const = 0;
+};
+
+bool cuda_available();
+/// @throws InputError if the back end is not there
+std::unique_ptr<Stepper> make_stepper(Backend backend, const World& world);
+}  // namespace tape

@@ -1,0 +1,75 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tape/bodies/assembly.hpp"
+#include "tape/contact/surface.hpp"
+#include "tape/effects/effects.hpp"
+#include "tape/model/scene.hpp"
+#include "tape/solver/linear_solver.hpp"
+#include "tape/solver/params.hpp"
+
+namespace tape {
+/// Everything a run is told: the scene, the settings of the effects and of the solver.
+struct Setup {
+  Scene scene;
+  EffectParams effects;
+  std::map<std::string, bool> forced;  ///< effects that the scene turns on or off whatever it needs
+  NewtonParams newton;
+  LinearParams linear;
+};
+
+/// One line of the effect plan.
+struct PlanLine {
+  std::string name;
+  bool on = false;
+  std::string why;
+};
+
+/// Constant for a run.
+struct World {
+  Setup setup;
+  Assembly assembly;
+  SurfaceMesh surface;
+  std::vector<PlanLine> plan;  ///< in the order of the list of effects
+
+  /// Checks settings and initial state.  @throws InputError saying what is wrong and where
+  static World build(Setup setup);
+};
+
+struct BodyState {
+  Pose pose;                             ///< X_WB
+  Vec3 velocity = Vec3::Zero();          ///< [m/s] of the centre of mass
+  Vec3 angular_momentum = Vec3::Zero();  ///< [kg m^2/s] about the centre of mass, in the world
+};
+
+/// All that the next step needs. Nothing outside it may change a bit of the future.
+struct State {
+  int step = 0;
+  Real time = 0;                  ///< [s]
+  std::vector<Vec3> x, v;         ///< [strip vertices] m, m/s
+  std::vector<BodyState> bodies;  ///< [bodies]
+
+  static State start(const World& world);
+  /// 64-bit FNV-1a of all bits above, as 16 hexadecimal digits.
+  std::string hash() const;
+};
+
+/// World-space positions [nv] m of all vertices.
+std::vector<Vec3> vertex_positions(const World& world, const State& state);
+
+/// What is prescribed for the end of a step: targets of grips and of driven bodies.
+struct Drive {
+  std::vector<Vec3> grip_target;     ///< [springs] m; unused where the grip ties to a body
+  std::vector<Real> grip_stiffness;  ///< [springs] N/m, 0 while open
+  std::vector<Pose> body_target;     ///< [bodies] X_WB; dynamic bodies: where their inertia takes them
+  static Drive at(const World& world, const State& state, Real dt);
+};
+
+/// Writes and reads the state exactly (HDF5, by a temporary name), with what is needed to refuse a snapshot of another scene.
+void save_snapshot(const std::string& file, const World& world, const State& state);
+/// @throws InputError if the file is missing, truncated, or of another scene
+State load_snapshot(const std::string& file, const World& world);
+}  // namespace tape
