@@ -13,4 +13,4 @@ else
 fi
 patterns=()
 for stem in "${stems[@]}"; do patterns+=("$PWD/$stem[./].*"); done
-run-clang-tidy -quiet -p "$build" -j "${JOBS:-$(nproc)}" "${patterns[@]}"
+run-clang-tidy -quiet -p "$build" -j "${JOBS:-$(nproc)}" "${patterns[@]}" 2> >(grep -v 'warnings* generated' >&2)
