@@ -1,0 +1,84 @@
+#pragma once
+#include <cfloat>
+#include <cmath>
+
+#include "tape/bodies/path.hpp"
+#include "tape/core/types.hpp"
+
+namespace tape {
+/// Axis-aligned box [m].
+struct Box {
+  Vec3 low, high;
+  TAPE_HD Vec3 centre() const { return 0.5 * (low + high); }
+  TAPE_HD Real radius() const { return 0.5 * (high - low).norm(); }  ///< [m] no point of the box is farther from the centre
+  TAPE_HD bool contains(const Box& b) const {
+    for (int k = 0; k < 3; ++k)
+      if (!(low[k] <= b.low[k] && b.high[k] <= high[k])) return false;
+    return true;
+  }
+};
+TAPE_HD inline Box inflated(const Box& b, Real by) { return {b.low - Vec3::Constant(by), b.high + Vec3::Constant(by)}; }
+TAPE_HD inline Box joined(const Box& a, const Box& b) { return {a.low.cwiseMin(b.low), a.high.cwiseMax(b.high)}; }
+
+/// Holds the whole path, t in [0, 1]: the box of its ends, inflated for an arc by the largest distance from its chord.
+TAPE_HD inline Box path_box(const VertexPath& path) {
+  const Vec3 x0 = path.centre + path.arm, x1 = path.at(1);
+  const Box chord{x0.cwiseMin(x1), x0.cwiseMax(x1)};
+  if (path.straight()) return chord;
+  const Real angle = path.spin.norm();
+  return inflated(chord, chord_deviation(path.spin.cross(path.arm).norm() / angle, angle));
+}
+
+/// A box as the tree stores it: eight numbers that are merged by their minimum and compared as a whole.
+/// Lanes 0-2 low, 3-5 -high [m, rounded outwards], 6 -(largest id), 7 whether no part of it can move.
+struct alignas(32) Lanes {
+  float m[8];
+};
+
+namespace detail {
+TAPE_HD inline float rounded_down(Real value) {
+  const float f = static_cast<float>(value);
+  return static_cast<Real>(f) <= value ? f : std::nextafter(f, -FLT_MAX);
+}
+using LanesMap = Eigen::Map<Eigen::Array<float, 8, 1>>;
+using ConstLanesMap = Eigen::Map<const Eigen::Array<float, 8, 1>>;
+}  // namespace detail
+
+/// @param id     below 2^24, so that a float holds it
+/// @param fixed  nothing in the box can move
+TAPE_HD inline Lanes stored_box(const Box& b, int id, bool fixed) {
+  Lanes out;
+  for (int k = 0; k < 3; ++k) {
+    out.m[k] = detail::rounded_down(b.low[k]);
+    out.m[3 + k] = detail::rounded_down(-b.high[k]);
+  }
+  out.m[6] = -static_cast<float>(id);
+  out.m[7] = fixed ? 1.0f : 0.0f;
+  return out;
+}
+/// Meets no box.
+TAPE_HD inline Lanes empty_box() {
+  Lanes out;
+  for (float& m : out.m) m = FLT_MAX / 2;
+  return out;
+}
+/// What stored boxes are compared with: meets those that overlap `b` and hold an id >= first_id; a fixed query, only those that can move.
+TAPE_HD inline Lanes query_box(const Box& b, int first_id, bool fixed) {
+  Lanes out;
+  for (int k = 0; k < 3; ++k) {
+    out.m[k] = -detail::rounded_down(-b.high[k]);
+    out.m[3 + k] = -detail::rounded_down(b.low[k]);
+  }
+  out.m[6] = -static_cast<float>(first_id);
+  out.m[7] = fixed ? 0.0f : 1.0f;
+  return out;
+}
+TAPE_HD inline bool meets(const Lanes& stored, const Lanes& query) {
+  return (detail::ConstLanesMap(query.m) - detail::ConstLanesMap(stored.m)).minCoeff() >= 0;
+}
+TAPE_HD inline Lanes merged(const Lanes& a, const Lanes& b) {
+  Lanes out;
+  detail::LanesMap(out.m) = detail::ConstLanesMap(a.m).min(detail::ConstLanesMap(b.m));
+  return out;
+}
+}  // namespace tape

@@ -1,0 +1,106 @@
+#pragma once
+#include <cmath>
+#include <limits>
+
+#include "tape/bodies/path.hpp"
+#include "tape/contact/pair.hpp"
+#include "tape/core/settings.hpp"
+
+namespace tape {
+/// How far a pair may go along its trial step.
+struct PairStep {
+  Real t;       ///< [1] in [0, 1]; exactly 1 where nothing comes close
+  bool capped;  ///< the iterations ran out: t is safe but short
+};
+struct CcdSettings {
+  Real eta = 0.2;        ///< [1] share of the gap at the start that is kept, in (0, 1)
+  int iterations = 512;  ///< cap on the number of advances
+  template <class F>
+  void fields(F&& f) {
+    f("eta", eta, "", Range{.low = 0, .high = 1, .open_low = true, .open_high = true}, "share of a gap that one step must leave");
+    f("iterations", iterations, "", Range::closed(1, 1e9), "cap on the advances of one pair");
+  }
+};
+
+namespace detail {
+/// Largest tau with a + b s - c s^2 / 2 >= 0 for all s in [0, tau]; a >= 0, c >= 0. Infinite if there is none.
+TAPE_HD inline Real first_zero(Real a, Real b, Real c) {
+  if (c == 0) return b < 0 ? -a / b : std::numeric_limits<Real>::infinity();
+  const Real root = std::sqrt(b * b + 2 * a * c);
+  if (b > 0) return (b + root) / c;
+  return root - b > 0 ? 2 * a / (root - b) : 0.0;
+}
+
+/// Where four paths stand at one time, relative to the first of them, and how they go on.
+struct Motion {
+  Vec3 x[4], velocity[4];  ///< [m], [m] per whole step
+  Real bend[4];            ///< [m] bound of the acceleration, per whole step squared
+  Real round_off;          ///< [m] bound of the error of a projected difference of two of the positions
+};
+TAPE_HD inline Motion motion_at(const VertexPath (&path)[4], Real t) {
+  Motion m;
+  const Vec3 origin = path[0].centre, drift = path[0].velocity;
+  Real size = 0;
+  for (int i = 0; i < 4; ++i) {
+    const VertexPath& p = path[i];
+    const Vec3 start = p.centre - origin, velocity = p.velocity - drift, moved = t * velocity;
+    const bool straight = p.straight();
+    const Vec3 arm = straight ? p.arm : rotate(t * p.spin, p.arm);
+    const Vec3 swing = straight ? Vec3(Vec3::Zero()) : Vec3(p.spin.cross(arm));
+    m.x[i] = (start + arm) + moved;
+    m.velocity[i] = velocity + swing;
+    m.bend[i] = straight ? 0.0 : p.spin.norm() * swing.norm();
+    size = std::fmax(size, (start.cwiseAbs() + arm.cwiseAbs() + moved.cwiseAbs()).maxCoeff());
+  }
+  m.round_off = 32 * std::numeric_limits<Real>::epsilon() * size;
+  return m;
+}
+TAPE_HD inline bool at_rest(const Motion& m) {
+  for (int i = 0; i < 4; ++i)
+    if (!m.velocity[i].isZero(0) || m.bend[i] > 0) return false;
+  return true;
+}
+}  // namespace detail
+
+/// Largest step t for which the gap d - xi of a pair stays above eta times its start over all of [0, t].
+/// Conservative advancement with a separating direction: with n = p / d between the closest points at t, every later distance is
+/// at least min over vertex pairs of n . (x_i - x_j), and along true paths each of these falls no faster than
+///   a + b s - c s^2 / 2,   b = n . (x_i' - x_j'),   c = |spin_i|^2 r_i + |spin_j|^2 r_j   (r: distance from the axis).
+/// The bound holds for any unit vector n, so an inexact closest point costs iterations, never a missed contact; for straight motion
+/// it is never shorter than the additive advance (d - xi) / l_p of [Li 2021] and does not stall in sliding. Derivation: README.md.
+/// A pair that starts without a gap may open or keep still: anything else has t = 0.
+TAPE_HD inline PairStep largest_step(PairKind kind, const VertexPath (&path)[4], Real xi, const CcdSettings& settings) {
+  constexpr Real kUsed = 0.99;      // of each safe advance, so that the check of a step just taken passes despite round-off
+  constexpr Real kTolerance = 0.1;  // stop when the gap is within this share of the smallest one allowed
+  const int firsts = kind == PairKind::vertex_triangle ? 1 : 2;
+  Real t = 0, kept = 0;
+  for (int k = 0; k < settings.iterations; ++k) {
+    const detail::Motion m = detail::motion_at(path, t);
+    if (k == 0 && detail::at_rest(m)) return {1, false};
+    const Closest c = closest(kind, m.x);
+    const Vec3 p = combine(c.weight, m.x);
+    const Real d = p.norm();
+    if (!(d > 0)) return {t, false};
+    const Vec3 n = p / d;
+    Real gaps[4], gap = std::numeric_limits<Real>::infinity();
+    const auto each = [&](auto&& f) {
+      for (int i = 0, pair = 0; i < firsts; ++i)
+        for (int j = firsts; j < 4; ++j) f(pair++, i, j);
+    };
+    each([&](int pair, int i, int j) {
+      gaps[pair] = n.dot(m.x[i] - m.x[j]) - xi - m.round_off;
+      gap = std::fmin(gap, gaps[pair]);
+    });
+    if (k == 0) kept = gap > 0 ? settings.eta * gap : gap;
+    if (k > 0 && !(gap > (1 + kTolerance) * kept)) return {t, false};
+    Real safe = std::numeric_limits<Real>::infinity();
+    each([&](int pair, int i, int j) {
+      safe = std::fmin(safe, detail::first_zero(gaps[pair] - kept, n.dot(m.velocity[i] - m.velocity[j]), m.bend[i] + m.bend[j]));
+    });
+    if (t + safe >= 1) return {1, false};
+    if (!(gap > 0)) return {t, false};
+    t += kUsed * safe;
+  }
+  return {t, true};
+}
+}  // namespace tape

@@ -1,0 +1,56 @@
+#include "tape/contact/groups.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "tape/core/error.hpp"
+
+namespace tape {
+namespace {
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+}  // namespace
+
+ObjectGroups::ObjectGroups(const SurfaceMesh& mesh)
+    : component_of_object(mesh.objects.size(), -1), parent_(mesh.objects.size()), fixed_(mesh.objects.size(), true) {
+  std::iota(parent_.begin(), parent_.end(), 0);
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    const VertexOwner owner = mesh.owner[v];
+    const int object = mesh.vertices[v].object;
+    TAPE_CHECK(object >= 0 && object < objects());
+    if (owner.block < 0) continue;
+    fixed_[at(object)] = false;
+    const std::size_t end = at(owner.block) + (owner.body < 0 ? 1 : 2);
+    if (object_of_block.size() < end) object_of_block.resize(end, -1);
+    const int other = object_of_block[at(owner.block)];
+    if (other >= 0) parent_[at(root(object))] = root(other);  // one body carries both
+    std::fill(object_of_block.begin() + owner.block, object_of_block.begin() + static_cast<std::ptrdiff_t>(end), object);
+  }
+  constant_parent_ = parent_;
+  number_components();
+}
+
+int ObjectGroups::root(int object) {
+  while (parent_[at(object)] != object) object = parent_[at(object)] = parent_[at(parent_[at(object)])];
+  return object;
+}
+
+void ObjectGroups::join(const std::vector<Real>& touching) {
+  parent_ = constant_parent_;
+  const int n = objects();
+  for (int a = 0; a < n; ++a)
+    for (int b = 0; b < n; ++b)
+      if (touching[at(a) * at(n) + at(b)] == 0 && !fixed_[at(a)] && !fixed_[at(b)]) parent_[at(root(a))] = root(b);
+  number_components();
+}
+
+void ObjectGroups::number_components() {
+  components = 0;
+  std::vector<int> number(parent_.size(), -1);
+  for (int i = 0; i < objects(); ++i) {
+    if (fixed_[at(i)]) continue;
+    int& c = number[at(root(i))];
+    if (c < 0) c = components++;
+    component_of_object[at(i)] = c;
+  }
+}
+}  // namespace tape

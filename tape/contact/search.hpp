@@ -1,0 +1,59 @@
+#pragma once
+#include <vector>
+
+#include "tape/contact/groups.hpp"
+#include "tape/contact/hits.hpp"
+#include "tape/contact/kernels.inl"
+#include "tape/contact/surface_buffers.hpp"
+
+namespace tape::TAPE_SIDE {
+/// What the search did so far, for the report.
+struct SearchReport {
+  int rebuilds = 0, reuses = 0;
+  int vertex_triangle = 0, edge_edge = 0;  ///< candidates now
+  long long capped = 0;                    ///< pairs whose CCD ran out of iterations, over the run: safe but short steps
+};
+
+/// Candidate pairs of a surface, valid while every vertex stays in its trust box, and the step limits that follow from them.
+/// The candidates hold every admissible pair that can come within dhat of touching there; their order (vertex-triangle, then
+/// edge-edge, each sorted by the primitives' ids) depends on nothing but the pairs themselves. README.md has the reasoning.
+class ContactSearch {
+ public:
+  /// @param dhat  [m] activation distance beyond xi
+  ContactSearch(const SurfaceMesh& mesh, Real dhat);
+  /// Makes the candidates good for the whole of `paths`.
+  /// @param margin  [m] by which the boxes of a rebuild exceed the paths: larger is reused longer, and finds more
+  /// @return whether they had to be rebuilt
+  bool update(const PathView& paths, Real margin);
+  /// Finds the candidates anew, whatever is known.
+  void rebuild(const PathView& paths, Real margin);
+  Span<const ContactPair> candidates() const { return pairs_.span(); }
+  const SearchReport& report() const { return report_; }
+
+  /// Largest share of the step along `paths` for each object, in [0, 1]; equal for objects that candidates connect.
+  /// Call after update() with the same paths. Fixed objects do not connect others; their value is 1.
+  std::vector<Real> limit_steps(const PathView& paths, const CcdSettings& settings);
+  /// Multiplies each block of a direction by the limit last found for what it moves.
+  void scale(Span<Vec3> direction) const;
+
+ private:
+  void join_components(const detail::SurfaceView& s);
+
+  detail::SurfaceBuffers surface_;
+  ObjectGroups groups_;
+  Buffer<Box> trust_;          ///< [nv]
+  Buffer<detail::Ball> ball_;  ///< [nv]
+  Buffer<Lanes> triangle_boxes_, edge_boxes_;
+  BoxTree triangle_tree_, edge_tree_;
+  detail::Hits vertex_hits_, edge_hits_;
+  Buffer<ContactPair> pairs_;
+  Buffer<Real> touching_;  ///< [objects objects]
+  Buffer<int> component_;  ///< [objects] -1: fixed
+  Buffer<int> block_object_;
+  Buffer<Real> limit_;  ///< [components]
+  SearchReport report_;
+  bool built_ = false;
+};
+}  // namespace tape::TAPE_SIDE
+
+#include "tape/contact/search.inl"

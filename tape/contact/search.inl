@@ -1,0 +1,64 @@
+#pragma once
+
+namespace tape::TAPE_SIDE {
+inline ContactSearch::ContactSearch(const SurfaceMesh& mesh, Real dhat)
+    : surface_(mesh, dhat), groups_(mesh), component_(groups_.component_of_object), block_object_(groups_.object_of_block) {
+  TAPE_CHECK(mesh.owner.size() == mesh.vertices.size() && dhat > 0);
+  TAPE_CHECK(std::max(mesh.edges.size(), mesh.triangles.size()) < (1u << 24));
+}
+
+inline bool ContactSearch::update(const PathView& paths, Real margin) {
+  if (built_ && reduce(paths.x.size, true, detail::InTrust{paths, trust_.span()}, detail::And{})) {
+    ++report_.reuses;
+    return false;
+  }
+  rebuild(paths, margin);
+  return true;
+}
+
+inline void ContactSearch::rebuild(const PathView& paths, Real margin) {
+  const detail::SurfaceView s = surface_.view();
+  trust_.resize(s.vertices.size), ball_.resize(s.vertices.size);
+  triangle_boxes_.resize(s.triangles.size), edge_boxes_.resize(s.edges.size);
+  parallel_for(s.vertices.size, detail::MakeTrust{paths, margin, trust_.span(), ball_.span()});
+  parallel_for(s.triangles.size, detail::TriangleBoxes{s, trust_.span(), triangle_boxes_.span()});
+  parallel_for(s.edges.size, detail::EdgeBoxes{s, trust_.span(), edge_boxes_.span()});
+  triangle_tree_.build(triangle_boxes_.span());
+  edge_tree_.build(edge_boxes_.span());
+  const detail::VertexQuery vertices{s, trust_.span(), ball_.span(), triangle_tree_.view()};
+  const detail::EdgeQuery edges{s, trust_.span(), ball_.span(), edge_tree_.view()};
+  report_.vertex_triangle = vertex_hits_.count(s.vertices.size, vertices);
+  report_.edge_edge = edge_hits_.count(s.edges.size, edges);
+  pairs_.resize(report_.vertex_triangle + report_.edge_edge);
+  const Span<ContactPair> pairs = pairs_.span();
+  vertex_hits_.emit(vertices, Span<ContactPair>{pairs.data, report_.vertex_triangle});
+  edge_hits_.emit(edges, Span<ContactPair>{pairs.data + report_.vertex_triangle, report_.edge_edge});
+  join_components(s);
+  built_ = true;
+  ++report_.rebuilds;
+}
+
+inline void ContactSearch::join_components(const detail::SurfaceView& s) {
+  const int n = groups_.objects();
+  touching_.resize(n * n);
+  parallel_for(n * n, detail::Fill{touching_.span(), 1.0});
+  parallel_for(pairs_.size(), detail::MarkTouching{pairs_.span(), s.vertices, n, touching_.span()});
+  groups_.join(touching_.download());
+  component_.upload(groups_.component_of_object);
+}
+
+inline std::vector<Real> ContactSearch::limit_steps(const PathView& paths, const CcdSettings& settings) {
+  limit_.resize(groups_.components);
+  parallel_for(limit_.size(), detail::Fill{limit_.span(), 1.0});
+  const detail::LimitStep kernel{pairs_.span(), paths, settings, surface_.vertices.span(), component_.span(), limit_.span()};
+  report_.capped += reduce(pairs_.size(), 0, kernel, detail::Plus{});
+  const std::vector<Real> limit = limit_.download();
+  std::vector<Real> of_object;
+  for (int c : groups_.component_of_object) of_object.push_back(c < 0 ? 1.0 : limit[static_cast<std::size_t>(c)]);
+  return of_object;
+}
+
+inline void ContactSearch::scale(Span<Vec3> direction) const {
+  parallel_for(direction.size, detail::ScaleBlocks{block_object_.span(), component_.span(), limit_.span(), direction});
+}
+}  // namespace tape::TAPE_SIDE

@@ -1,0 +1,41 @@
+#pragma once
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "tape/contact/kernels.inl"
+
+namespace tape::TAPE_SIDE::detail {
+/// Which body carries each whole primitive; kFixed or kFree if none does. On the host.
+struct Carriers {
+  std::vector<int> vertex, edge, triangle;
+  explicit Carriers(const SurfaceMesh& mesh) {
+    for (const VertexOwner& o : mesh.owner) vertex.push_back(o.block < 0 ? kFixed : o.body < 0 ? kFree : o.body);
+    for (const SurfaceEdge& e : mesh.edges) edge.push_back(common(e.v));
+    for (const SurfaceTriangle& t : mesh.triangles) triangle.push_back(common(t.v));
+  }
+  int common(std::span<const int> v) const {
+    const int c = vertex[static_cast<std::size_t>(v[0])];
+    return std::ranges::all_of(v, [&](int w) { return vertex[static_cast<std::size_t>(w)] == c; }) ? c : kFree;
+  }
+};
+
+/// The surface in the memory of this side.
+struct SurfaceBuffers {
+  SurfaceBuffers(const SurfaceMesh& mesh, Real dhat_)
+      : vertices(mesh.vertices), edges(mesh.edges), triangles(mesh.triangles), materials(mesh.materials), dhat(dhat_) {
+    const Carriers carriers(mesh);
+    vertex_carrier.upload(carriers.vertex), edge_carrier.upload(carriers.edge), triangle_carrier.upload(carriers.triangle);
+  }
+  SurfaceView view() const {
+    return {vertices.span(), edges.span(), triangles.span(), vertex_carrier.span(), edge_carrier.span(), triangle_carrier.span(),
+            materials,       dhat};
+  }
+  Buffer<SurfaceVertex> vertices;
+  Buffer<SurfaceEdge> edges;
+  Buffer<SurfaceTriangle> triangles;
+  Buffer<int> vertex_carrier, edge_carrier, triangle_carrier;
+  int materials;
+  Real dhat;
+};
+}  // namespace tape::TAPE_SIDE::detail

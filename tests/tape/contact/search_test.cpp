@@ -1,0 +1,290 @@
+#include "tape/contact/search.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <tuple>
+
+#include "tests/tape/contact/meshes.hpp"
+using namespace tape;
+using namespace tape::on_cpu;
+
+namespace {
+constexpr Real kDhat = 1.8e-4, kXi = 4.5e-5;  // [m]
+using Key = std::tuple<int, int, int, int, int>;
+
+struct Scene {
+  explicit Scene(test::Surface s) : surface(std::move(s)), direction(static_cast<std::size_t>(surface.blocks), Vec3(Vec3::Zero())) {}
+  const SurfaceMesh& mesh() const { return surface.mesh; }
+  void jiggle(Real size, unsigned seed) {  // [m]
+    std::mt19937_64 generator(seed);
+    std::uniform_real_distribution<Real> u(-size, size);
+    for (Vec3& d : direction) d = Vec3(u(generator), u(generator), u(generator));
+  }
+  PathView paths() {
+    device_x.upload(surface.x), device_direction.upload(direction), device_owner.upload(surface.mesh.owner), device_bodies.upload(bodies);
+    return {device_x.span(), device_owner.span(), device_direction.span(), device_bodies.span()};
+  }
+  void move(Real t) {
+    const PathView p = paths();
+    for (int v = 0; v < p.x.size; ++v) surface.x[static_cast<std::size_t>(v)] = p[v].at(t);
+  }
+  test::Surface surface;
+  std::vector<Vec3> direction, bodies;
+  Buffer<Vec3> device_x, device_direction, device_bodies;
+  Buffer<VertexOwner> device_owner;
+};
+
+Key key(const ContactPair& p) { return {static_cast<int>(p.kind), p.v[0], p.v[1], p.v[2], p.v[3]}; }
+std::set<Key> keys(Span<const ContactPair> pairs) {
+  std::set<Key> out;
+  for (const ContactPair& p : pairs) out.insert(key(p));
+  return out;
+}
+bool same_carrier(const SurfaceMesh& mesh, const std::vector<int>& v) {
+  const auto carrier = [&](int w) {
+    const VertexOwner o = mesh.owner[static_cast<std::size_t>(w)];
+    return o.block < 0 ? -2 : o.body;
+  };
+  return carrier(v[0]) != -1 && std::ranges::all_of(v, [&](int w) { return carrier(w) == carrier(v[0]); });
+}
+/// All admissible pairs of primitives, from the words of surface.hpp.
+template <class F>
+void all_pairs(const SurfaceMesh& mesh, F&& f) {
+  for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v)
+    for (const SurfaceTriangle& t : mesh.triangles)
+      if (v != t.v[0] && v != t.v[1] && v != t.v[2] && !same_carrier(mesh, {v, t.v[0], t.v[1], t.v[2]}))
+        f(Key(0, v, t.v[0], t.v[1], t.v[2]));
+  for (std::size_t i = 0; i < mesh.edges.size(); ++i)
+    for (std::size_t j = i + 1; j < mesh.edges.size(); ++j) {
+      const auto &a = mesh.edges[i].v, &b = mesh.edges[j].v;
+      if (a[0] != b[0] && a[0] != b[1] && a[1] != b[0] && a[1] != b[1] && !same_carrier(mesh, {a[0], a[1], b[0], b[1]}))
+        f(Key(1, a[0], a[1], b[0], b[1]));
+    }
+}
+Real distance(const Key& k, const std::vector<Vec3>& x) {
+  const auto [kind, a, b, c, d] = k;
+  const auto at = [&](int v) { return x[static_cast<std::size_t>(v)]; };
+  const Vec3 y[4] = {at(a), at(b), at(c), at(d)};
+  return combine(closest(static_cast<PairKind>(kind), y).weight, y).norm();
+}
+/// Pairs within xi + dhat at any of nine times along the paths, by trying all; `xi` [m] of both sides together.
+std::set<Key> near_pairs(Scene& scene, Real xi, Real dhat) {
+  std::set<Key> out;
+  for (int k = 0; k <= 8; ++k) {
+    Scene moved(scene.surface);
+    moved.direction = scene.direction, moved.bodies = scene.bodies;
+    moved.move(k / 8.0);
+    all_pairs(scene.mesh(), [&](const Key& key) {
+      if (distance(key, moved.surface.x) < xi + dhat) out.insert(key);
+    });
+  }
+  return out;
+}
+void expect_holds_all(const std::set<Key>& found, const std::set<Key>& wanted) {
+  EXPECT_FALSE(wanted.empty());
+  EXPECT_TRUE(std::ranges::includes(found, wanted));
+}
+/// A table of two triangles that cannot move, `height` [m] below y = 0.
+void add_table(test::Surface& s, Real height) {
+  const VertexOwner fixed;
+  test::add_object(s, {{-1, -height, -1}, {1, -height, -1}, {1, -height, 1}, {-1, -height, 1}}, {{0, 1, 2}, {0, 2, 3}}, kXi, &fixed);
+}
+/// A square of two triangles, side 10 mm, at `x` [m] and `y` [m] above the origin.
+void add_tile(test::Surface& s, Real x, Real y, const VertexOwner* owner = nullptr) {
+  test::add_object(s, {{x, y, 0}, {x + 0.01, y, 0}, {x + 0.01, y, 0.01}, {x, y, 0.01}}, {{0, 1, 2}, {0, 2, 3}}, kXi, owner);
+}
+}  // namespace
+
+TEST(ContactSearch, CandidatesHoldEveryPairThatComesNearAlongRandomMotion) {
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    Scene scene(test::scattered_triangles(60, 0.2, 0.01, seed));
+    scene.jiggle(0.1, seed);
+    ContactSearch search(scene.mesh(), 0.02);
+    EXPECT_TRUE(search.update(scene.paths(), 0));
+    const std::set<Key> found = keys(search.candidates());
+    expect_holds_all(found, near_pairs(scene, 0.02, 0.02));
+    std::set<Key> admissible;
+    all_pairs(scene.mesh(), [&](const Key& k) { admissible.insert(k); });
+    EXPECT_TRUE(std::ranges::includes(admissible, found));
+    EXPECT_LT(found.size(), admissible.size() / 2) << "nothing was left out";
+  }
+}
+
+TEST(ContactSearch, CandidatesHoldEveryPairOfRollsAndFolds) {
+  for (const test::Surface& s : {test::wound_strip(1.3, 2.7e-4, kXi), test::folded_strip(3, 10, 2.7e-4, kXi)}) {
+    Scene scene(s);
+    scene.jiggle(1e-4, 5);
+    ContactSearch search(scene.mesh(), kDhat);
+    search.update(scene.paths(), 5e-5);
+    expect_holds_all(keys(search.candidates()), near_pairs(scene, 2 * kXi, kDhat));
+  }
+}
+
+TEST(ContactSearch, CandidatesHoldEveryPairOfATurningBody) {
+  test::Surface s;
+  add_table(s, 4e-3);
+  const VertexOwner body{0, 0};
+  add_tile(s, 0, 0, &body);
+  s.blocks = 2;
+  Scene scene(s);
+  scene.bodies = {Vec3(0.005, 0, 0.005)};
+  scene.direction = {Vec3(1e-4, 0, 0), Vec3(0, 0, 3.1)};  // about the z axis: the sides dip 5 mm, through the table
+  ContactSearch search(scene.mesh(), 1.5e-3);
+  search.update(scene.paths(), 0);
+  expect_holds_all(keys(search.candidates()), near_pairs(scene, 2 * kXi, 1.5e-3));
+  EXPECT_LT(search.limit_steps(scene.paths(), {})[1], 0.5);
+}
+
+TEST(ContactSearch, ConstantsOfAPairComeFromItsTwoPrimitives) {
+  test::Surface s;
+  test::add_object(s, {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}, {{0, 1, 2}}, 0.01, nullptr, 2);
+  test::add_object(s, {{0.2, 0.05, 0.2}, {0.8, 0.05, 0.2}, {0.2, 0.05, 0.6}}, {{0, 1, 2}}, 0.02, nullptr, 1);
+  s.mesh.materials = 3;
+  s.mesh.vertices[3].xi = 0.015;
+  Scene scene(s);
+  ContactSearch search(scene.mesh(), 0.1);
+  search.update(scene.paths(), 0);
+  int kinds[2] = {0, 0};
+  for (const ContactPair& p : search.candidates()) {
+    ++kinds[static_cast<int>(p.kind)];
+    EXPECT_EQ(p.interface, 1 * 3 + 2);
+    const bool small_vertex = p.v[0] >= 3;
+    if (p.kind == PairKind::vertex_triangle) {
+      EXPECT_DOUBLE_EQ(p.xi, small_vertex ? (p.v[0] == 3 ? 0.015 : 0.02) + 0.01 : 0.01 + 0.02);
+      EXPECT_DOUBLE_EQ(p.weight, small_vertex ? 0.12 / 3 : 0.12);  // areas 0.5 and 0.12: vertex share 0.04, or 0.5 / 3 against 0.12
+      EXPECT_EQ(p.mollifier, 0);
+    } else {
+      const auto length2 = [&](int a, int b) {
+        return (s.x[static_cast<std::size_t>(a)] - s.x[static_cast<std::size_t>(b)]).squaredNorm();
+      };
+      EXPECT_DOUBLE_EQ(p.xi, 0.01 + 0.02);
+      EXPECT_DOUBLE_EQ(p.weight, 0.12 / 3);
+      EXPECT_DOUBLE_EQ(p.mollifier, 1e-3 * length2(p.v[0], p.v[1]) * length2(p.v[2], p.v[3]));
+    }
+  }
+  EXPECT_GT(kinds[0], 0);
+  EXPECT_GT(kinds[1], 0);
+  EXPECT_EQ(kinds[0], search.report().vertex_triangle);
+  EXPECT_EQ(kinds[1], search.report().edge_edge);
+}
+
+TEST(ContactSearch, CandidatesAreReusedExactlyWhileEveryPathStaysInItsTrustBox) {
+  Scene scene(test::folded_strip(3, 10, 2.7e-4, kXi));
+  scene.jiggle(1e-4, 7);
+  ContactSearch search(scene.mesh(), kDhat);
+  EXPECT_TRUE(search.update(scene.paths(), 5e-5));
+  EXPECT_FALSE(search.update(scene.paths(), 5e-5));
+  scene.move(0.5);
+  for (Vec3& d : scene.direction) d *= 0.5;
+  EXPECT_FALSE(search.update(scene.paths(), 5e-5)) << "the rest of the same paths";
+  const std::vector<Vec3> kept = scene.direction;
+  scene.direction[17] += Vec3(2e-4, 0, 0);
+  EXPECT_TRUE(search.update(scene.paths(), 5e-5)) << "one vertex leaves";
+  expect_holds_all(keys(search.candidates()), near_pairs(scene, 2 * kXi, kDhat));
+  EXPECT_EQ(search.report().rebuilds, 2);
+  EXPECT_EQ(search.report().reuses, 2);
+}
+
+TEST(ContactSearch, AnArcThatOnlyBulgesOutOfItsBoxIsNotOverlooked) {
+  test::Surface s;
+  add_table(s, 1);
+  const VertexOwner body{0, 0};
+  add_tile(s, 0, 0, &body);
+  s.blocks = 2;
+  Scene scene(s);
+  scene.bodies = {Vec3(0.005, 0, 0.005)};
+  scene.direction = {Vec3::Zero(), Vec3::Zero()};
+  ContactSearch search(scene.mesh(), kDhat);
+  search.update(scene.paths(), 1e-4);
+  scene.direction = {Vec3::Zero(), Vec3(0, 2 * 3.14159265358979323846, 0)};  // a full turn ends where it began
+  EXPECT_TRUE(search.update(scene.paths(), 1e-4));
+}
+
+TEST(ContactSearch, NoMotionLeavesNoPairBetweenFixedThingsOrWithinOneBody) {
+  test::Surface s;
+  add_table(s, 0);
+  add_table(s, 1e-4);
+  const VertexOwner body{0, 0};
+  add_tile(s, 0.5, 0.5, &body);
+  add_tile(s, 0.5, 0.5001, &body);
+  s.blocks = 2;
+  Scene scene(s);
+  scene.bodies = {Vec3(0.5, 0.5, 0)};
+  ContactSearch search(scene.mesh(), kDhat);
+  search.update(scene.paths(), 1e-3);
+  EXPECT_EQ(search.candidates().size, 0);
+}
+
+TEST(ContactSearch, OnlyWhatCandidatesConnectSharesAStepLimit) {
+  test::Surface s;
+  add_table(s, 1e-3);      // 0: fixed, under everything
+  add_tile(s, 0, 0);       // 1: falls onto the table
+  add_tile(s, 0, 1.8e-3);  // 2: lies close above 1, at rest
+  add_tile(s, 0.1, 0);     // 3: far away, glides along the table
+  add_tile(s, 0.2, 0);     // 4: falls half as far as 1
+  Scene scene(s);
+  const auto set = [&](int tile, const Vec3& d) { std::fill_n(scene.direction.begin() + 4 * (tile - 1), 4, d); };
+  set(1, Vec3(0, -2e-3, 0)), set(3, Vec3(1e-3, 0, 0)), set(4, Vec3(0, -1e-3, 0));
+  ContactSearch search(scene.mesh(), 1.9e-3);
+  search.update(scene.paths(), 0);
+  const Real eta = 0.2, gap = 1e-3 - 2 * kXi;
+  const std::vector<Real> limit = search.limit_steps(scene.paths(), {.eta = eta});
+  ASSERT_EQ(limit.size(), 5u);
+  EXPECT_EQ(limit[0], 1);
+  EXPECT_NEAR(limit[1], (1 - eta) * gap / 2e-3, 0.02 * limit[1]);  // head-on: stops when eta of the gap is left
+  EXPECT_EQ(limit[2], limit[1]) << "joined through their candidates";
+  EXPECT_EQ(limit[3], 1) << "the table connects nothing";
+  EXPECT_NEAR(limit[4], (1 - eta) * gap / 1e-3, 0.02 * limit[4]);
+  EXPECT_EQ(search.report().capped, 0);
+  Buffer<Vec3> scaled(scene.direction);
+  search.scale(scaled.span());
+  for (int b = 0; b < 16; ++b)
+    EXPECT_EQ(scaled.span()[b], Vec3(limit[static_cast<std::size_t>(1 + b / 4)] * scene.direction[static_cast<std::size_t>(b)]));
+}
+
+TEST(ContactSearch, TwoObjectsOnOneBodyShareAStepLimit) {
+  test::Surface s;
+  add_table(s, 1e-3);
+  const VertexOwner body{0, 0};
+  add_tile(s, 0, 0, &body);
+  add_tile(s, 0.5, 0.5, &body);
+  s.blocks = 2;
+  Scene scene(s);
+  scene.bodies = {Vec3(0, 0, 0)};
+  scene.direction = {Vec3(0, -2e-3, 0), Vec3::Zero()};
+  ContactSearch search(scene.mesh(), kDhat);
+  search.update(scene.paths(), 0);
+  const std::vector<Real> limit = search.limit_steps(scene.paths(), {});
+  EXPECT_LT(limit[1], 0.5);
+  EXPECT_EQ(limit[2], limit[1]);
+}
+
+TEST(ContactSearch, ThreadsAndOrderOfIterationsChangeNothing) {
+  Scene scene(test::wound_strip(6, 2.7e-4, kXi));
+  scene.jiggle(2e-4, 11);
+  const auto run = [&](int n, std::uint64_t seed) {
+    set_threads(n), set_shuffled_order(seed);
+    ContactSearch search(scene.mesh(), kDhat);
+    search.update(scene.paths(), 1e-5);
+    std::vector<Key> order;
+    for (const ContactPair& p : search.candidates()) order.push_back(key(p));
+    const std::vector<Real> limit = search.limit_steps(scene.paths(), {});
+    set_threads(0), set_shuffled_order(0);
+    return std::pair(order, limit);
+  };
+  const auto one = run(1, 0);
+  EXPECT_LT(one.second[0], 1);
+  EXPECT_TRUE(std::ranges::is_sorted(one.first, {}, [](const Key& k) { return std::pair(std::get<0>(k), std::get<1>(k)); }));
+  EXPECT_EQ(run(2, 0), one);
+  EXPECT_EQ(run(8, 0), one);
+  EXPECT_EQ(run(1, 42), one);
+}
+
+TEST(ContactSearch, AnEmptySurfaceHasNoCandidates) {
+  Scene scene{test::Surface{}};
+  ContactSearch search(scene.mesh(), kDhat);
+  search.update(scene.paths(), 0);
+  EXPECT_EQ(search.candidates().size, 0);
+  EXPECT_TRUE(search.limit_steps(scene.paths(), {}).empty());
+}
