@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <type_traits>
 
 #include "tape/core/hd.hpp"
 
@@ -37,6 +38,6 @@ struct Span {
   TAPE_HD T& operator[](int i) const { return data[i]; }
   TAPE_HD T* begin() const { return data; }
   TAPE_HD T* end() const { return data + size; }
-  TAPE_HD operator Span<const T>() const { return {data, size}; }
+  TAPE_HD operator Span<const T>() const requires(!std::is_const_v<T>) { return {data, size}; }
 };
 }  // namespace tape
