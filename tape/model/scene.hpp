@@ -71,10 +71,11 @@ struct Strip {
   int material = 0;              ///< index into Scene::materials
 };
 
-/// Prescribed pose at a time. Between waypoints position and rotation vector go linearly, or smoothly with `ease`.
+/// Prescribed pose at a time; motion.hpp says how a body moves between two of them.
 struct Waypoint {
-  Real time = 0;  ///< [s]
-  Pose pose;
+  Real time = 0;      ///< [s]
+  Pose pose;          ///< of the mesh's frame
+  bool ease = false;  ///< the move to this waypoint starts and ends at rest
 };
 
 /// A rigid thing. Its mesh is in its own frame, whose origin need not be the centre of mass.
@@ -87,14 +88,18 @@ struct Body {
   Real mass = 0;                         ///< [kg] 0: from density
   Vec3 velocity = Vec3::Zero();          ///< [m/s] of the centre of mass
   Vec3 angular_velocity = Vec3::Zero();  ///< [rad/s] in the world
-  std::vector<Waypoint> waypoints;       ///< of a driven body, times ascending; before the first and after the last it rests
+  std::vector<Waypoint> waypoints;       ///< of a driven body, times ascending; none: it keeps its velocities
   Real xi = 0;                           ///< [m] half-thickness in contact
   int material = 0;                      ///< index into Scene::materials
 };
 
 struct Material {
   std::string name;
-  Real mu = 0.5;  ///< friction; a pair takes the geometric mean unless Scene::frictions names it
+  Real mu = 0.5;
+  template <class F>
+  void fields(F&& f) {
+    f("mu", mu, "1", Range::non_negative(), "friction; a pair takes the geometric mean unless `interfaces` names it");
+  }
 };
 struct FrictionPair {
   int a = 0, b = 0;  ///< materials

@@ -5,18 +5,26 @@
 
 namespace tape {
 /// A strip as triangles. Structured patterns number their vertices row by row: row * columns + column, row 0 at the start.
+/// `irregular` and meshes with a grid angle number them by x.
 struct StripMesh {
   std::vector<Vec2> rest;         ///< [n] m, flat: x in [0, length], y in [-width/2, width/2]
   std::vector<Index3> triangles;  ///< counter-clockwise in the rest plane: normal = backing side
   int rows = 0;                   ///< rows of vertices, counting the crossed pattern's cell centres into the row before them
-  int columns = 0;                ///< vertices per row, the largest; unknowns of neighbouring rows stand close in memory
+  int columns = 0;                ///< vertices per row, the largest. Numbered by x: largest difference of two indices in a triangle
 };
+
+/// Length [m] of a cell along the strip: cell_length, or that of a square cell, rounded so that whole cells fill the strip.
+Real cell_length(const StripParams& params, Real width);
+
 /// @throws InputError if the settings cannot be meshed (such as a grid angle without pattern `same`)
 StripMesh make_strip_mesh(const StripParams& params, Real width, int seed);
 
 /// Positions [n] m of the strip at the start: its centreline follows `strip.path`, cross-sections stay straight.
+/// The centreline keeps its length along the arcs; chords of cells are shorter by the factor sin(a)/a, a = cell/(2 radius).
 std::vector<Vec3> place(const StripMesh& mesh, const Strip& strip);
 
+/// Vertices with x in [from, to] m, in order.
+std::vector<int> vertices_between(const StripMesh& mesh, Real from, Real to);
 /// Vertices within `tolerance` [m] of the first or the last edge of the strip, in order.
 std::vector<int> root_vertices(const StripMesh& mesh, Real tolerance);
 std::vector<int> tip_vertices(const StripMesh& mesh, Real tolerance);
