@@ -1,0 +1,38 @@
+#include "apps/render/picture.hpp"
+
+#include <gtest/gtest.h>
+#include <png.h>
+#include <unistd.h>
+
+#include "tape/core/error.hpp"
+using namespace tape;
+using namespace tape::render;
+namespace fs = std::filesystem;
+
+TEST(Picture, APngHoldsThePixelsItWasGiven) {
+  const fs::path path = fs::temp_directory_path() / ("tape_picture_test_" + std::to_string(getpid()) + ".png");
+  Picture picture(5, 3);
+  for (std::size_t i = 0; i < picture.rgb.size(); ++i) picture.rgb[i] = static_cast<std::uint8_t>(17 * i);
+  write_png(path, picture);
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  ASSERT_TRUE(png_image_begin_read_from_file(&image, path.c_str()));
+  image.format = PNG_FORMAT_RGB;
+  EXPECT_EQ(image.width, 5u);
+  EXPECT_EQ(image.height, 3u);
+  std::vector<std::uint8_t> pixels(PNG_IMAGE_SIZE(image));
+  ASSERT_TRUE(png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr));
+  EXPECT_EQ(pixels, picture.rgb);
+  fs::remove(path);
+}
+
+TEST(Picture, AFileThatCannotBeWrittenIsNamedAndNothingIsLeft) {
+  const fs::path path = fs::temp_directory_path() / "no such folder" / "a.png";
+  try {
+    write_png(path, Picture(2, 2));
+    ADD_FAILURE() << "accepted";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find(path.string()), std::string::npos) << e.what();
+  }
+  EXPECT_FALSE(fs::exists(path.parent_path()));
+}
