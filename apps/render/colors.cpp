@@ -27,7 +27,7 @@ Vec3 from_oklch(Real lightness, Real chroma, Real hue) {
 Vec3 color(ColorMap map, Real t) {
   constexpr Real kDegree = std::numbers::pi / 180;
   t = std::clamp(t, 0.0, 1.0);
-  if (map == ColorMap::sequential) return from_oklch(0.27 + 0.65 * t, 0.10 + 0.07 * t, (310 - 205 * t) * kDegree);
+  if (map == ColorMap::sequential) return from_oklch(0.27 + 0.65 * t, 0.095 + 0.075 * t * t * t * t, (310 - 205 * t) * kDegree);
   const Real side = 2 * t - 1, distance = std::abs(side);
   return from_oklch(0.96 - 0.48 * distance, 0.20 * distance, (side < 0 ? 258 : 27) * kDegree);
 }

@@ -20,7 +20,8 @@ struct Mesh {
 
 struct RenderScene {
   std::vector<Mesh> meshes{};
-  std::optional<Real> ground{};    ///< [m] height z of a ground with lines each 10 mm and each 100 mm; none: no ground
+  std::optional<Real>
+      ground{};  ///< [m] height z of a ground with lines each 10 and 100 mm (100 mm and 1 m in scenes beyond 2 m); none: no ground
   std::optional<Bounds> bounds{};  ///< of the whole motion, so that shadows do not flicker; by default of the meshes
   std::vector<Legend> legends{};
   std::string caption{};  ///< in the upper left corner, such as the time

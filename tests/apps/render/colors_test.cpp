@@ -25,7 +25,7 @@ TEST(Colors, TheSequentialMapGetsLighterInEqualSteps) {
   EXPECT_GT(whole, 65);
   for (int i = 0; i < 20; ++i) {
     const Real step = lightness(color(ColorMap::sequential, (i + 1) / 20.0)) - lightness(color(ColorMap::sequential, i / 20.0));
-    EXPECT_NEAR(step, whole / 20, 0.4 * whole / 20) << "step " << i;
+    EXPECT_NEAR(step, whole / 20, 0.25 * whole / 20) << "step " << i;
   }
 }
 
