@@ -84,7 +84,7 @@ Triangles::Triangles() {
   glBindVertexArray(array_);
   glBindBuffer(GL_ARRAY_BUFFER, buffer_);
   const auto attribute = [](GLuint location, GLint size, GLenum type, std::size_t offset) {
-    glVertexAttribPointer(location, size, type, type == GL_UNSIGNED_BYTE, sizeof(DrawVertex), reinterpret_cast<const void*>(offset));
+    glVertexAttribPointer(location, size, type, type == GL_UNSIGNED_BYTE, sizeof(DrawVertex), static_cast<const char*>(nullptr) + offset);
     glEnableVertexAttribArray(location);
   };
   attribute(0, 3, GL_FLOAT, offsetof(DrawVertex, position));

@@ -27,6 +27,7 @@ int spawn(pid_t* id, const std::vector<std::string>& arguments, int input, int e
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
   posix_spawnattr_setpgroup(&attributes, 0);
   std::vector<char*> words;
+  words.reserve(arguments.size() + 1);
   for (const std::string& a : arguments) words.push_back(const_cast<char*>(a.c_str()));
   words.push_back(nullptr);
   const int failure = posix_spawnp(id, words[0], &actions, &attributes, words.data(), environ);
