@@ -84,7 +84,7 @@ TEST_F(Video, KeepsTheColours) {
   write_video(file, 3);
   const std::string pixels = output_of("ffmpeg -v error -i " + quoted(file) + " -frames:v 1 -f rawvideo -pix_fmt rgb24 -");
   ASSERT_EQ(pixels.size(), 3u * 96 * 64);
-  const std::size_t middle = 3u * (32u * 96u + 48u);
+  constexpr std::size_t middle = 3 * (std::size_t{32} * 96 + 48);
   const std::array<int, 3> expected{200, 60, 30};
   for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(static_cast<unsigned char>(pixels[middle + k]), expected[k], 4);
 }
