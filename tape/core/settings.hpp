@@ -42,13 +42,19 @@ std::string to_text(E value) {
   return std::string(enum_names(value)[static_cast<std::size_t>(value)]);
 }
 
+/// What `fields` of a settings struct calls for each of its members.
+struct FieldVisitor {  // named, because nvcc refuses lambdas in concepts
+  template <class V>
+  void operator()(const char*, V&, const char*, Range, const char*) const {}
+};
+
 /// A settings struct is plain: default on each member, and one list
 ///   template <class F> void fields(F&& f) { f("dhat", dhat, "m", Range::positive(), "activation distance"); }
 /// of name, member, unit ("" if none), range and meaning. Reading, checking, printing and help all follow from it.
 /// Members may be Real, int, bool, std::string, Vec3 or a NamedEnum; the range holds for numbers (each component).
 template <class T>
-concept Settings = requires(T t) {
-  t.fields([](const char*, auto&, const char*, Range, const char*) {});
+concept Settings = requires(T t, const FieldVisitor& visitor) {
+  t.fields(visitor);
 };
 
 /// @throws SettingsError naming `path`.`field` for the first number outside its range

@@ -38,6 +38,7 @@ struct Span {
   TAPE_HD T& operator[](int i) const { return data[i]; }
   TAPE_HD T* begin() const { return data; }
   TAPE_HD T* end() const { return data + size; }
-  TAPE_HD operator Span<const T>() const requires(!std::is_const_v<T>) { return {data, size}; }
+  template <class U>
+  requires(std::is_same_v<U, const T> && !std::is_const_v<T>) TAPE_HD operator Span<U>() const { return {data, size}; }
 };
 }  // namespace tape

@@ -1,0 +1,151 @@
+#pragma once
+#include "tape/effects/barrier_law.hpp"
+#include "tape/effects/effect.hpp"
+#include "tape/math/psd.hpp"
+
+namespace tape {
+/// Contact barrier of vertex-triangle and edge-edge pairs:  E = m b(d), with the law b of the pair's distance and the mollifier m
+/// of its edges (1 for vertex-triangle pairs).
+/// With closest-point weights w and unit normal n, grad d = w (x) n for all features. Its second derivative follows from
+/// D = d^2/2 minimised over the free parameters of the closest points: H_D = W^T W - Q S^-1 Q^T.
+struct Barrier {
+  static constexpr std::string_view name = "barrier";
+  static constexpr bool contact_pairs = true;
+  using Params = NoParams;
+  using Element = ContactPair;
+  Span<const Element> elements;
+  BarrierLaw law;
+
+  /// A strip can touch itself; bodies touch each other unless all, or all but one, are static.
+  static std::string needed(const Scene& scene, const Params&) {
+    if (!scene.strips.empty()) return "strip";
+    int movable = 0;
+    for (const Body& b : scene.bodies) movable += b.motion != Motion::fixed;
+    return movable > 0 && scene.bodies.size() > 1 ? "bodies" : "";
+  }
+  static Barrier build(const Scene& scene, const Assembly&, const Params&, std::vector<Element>&) {
+    return {{}, {scene.contact.kappa, scene.dhat()}};
+  }
+
+  TAPE_HD Stencil<4> stencil(int i) const {
+    const int(&v)[4] = elements[i].v;
+    return {{v[0], v[1], v[2], v[3]}};
+  }
+  TAPE_HD bool active(const StateView& s, int i) const {
+    const PairState p = PairState::at(elements[i], s.x);
+    return law.reaches(p.d, elements[i].xi) && p.fade.value > 0;
+  }
+  TAPE_HD Jet barrier(const PairState& p, int i) const { return law.at(p.d, elements[i].xi, elements[i].weight); }
+
+  TAPE_HD Real energy(const StateView& s, int i) const {
+    const PairState p = PairState::at(elements[i], s.x);
+    return p.fade.value > 0 ? p.fade.value * barrier(p, i).value : 0;
+  }
+  /// Force [N] that pushes the two primitives apart, along the normal.
+  TAPE_HD Real normal_force(const StateView& s, int i) const {
+    const PairState p = PairState::at(elements[i], s.x);
+    return -p.fade.value * barrier(p, i).slope;
+  }
+  TAPE_HD VecN<12> gradient(const StateView& s, int i) const {
+    const PairState p = PairState::at(elements[i], s.x);
+    const Jet b = barrier(p, i);
+    VecN<12> g = p.fade.value * b.slope * distance_gradient(p);
+    if (p.fade.slope != 0) g += p.fade.slope * b.value * 2 * fade_pull(p, p.cross());
+    return g;
+  }
+  TAPE_HD MatN<12, 12> hessian(const StateView& s, int i, HessianMode mode) const {
+    const PairState p = PairState::at(elements[i], s.x);
+    const Jet b = barrier(p, i);
+    if (mode == HessianMode::exact) return exact_hessian(p, b);
+    return p.fade.slope != 0 ? faded_projected_hessian(p, b) : projected_hessian(p, b);
+  }
+
+ private:
+  TAPE_HD static VecN<12> distance_gradient(const PairState& p) {
+    const Vec3 n = p.normal();
+    VecN<12> g;
+    for (int k = 0; k < 4; ++k) g.segment<3>(3 * k) = p.closest.weight[k] * n;
+    return g;
+  }
+  /// J^T v with J = d(ea x eb)/dx; that of c = |ea x eb|^2 is 2 J^T (ea x eb).
+  TAPE_HD static VecN<12> fade_pull(const PairState& p, const Vec3& v) {
+    const Vec3 a = (p.x[3] - p.x[2]).cross(v), b = v.cross(p.x[1] - p.x[0]);
+    VecN<12> g;
+    g << -a, a, -b, b;
+    return g;
+  }
+  /// Matrix by (ea, eb) -> by the four vertices.
+  TAPE_HD static MatN<12, 12> by_vertices(const Mat3& aa, const Mat3& ab, const Mat3& bb) {
+    MatN<12, 12> h;
+    const Mat3 ba = ab.transpose();
+    h << aa, -aa, ab, -ab, -aa, aa, -ab, ab, ba, -ba, bb, -bb, -ba, ba, -bb, bb;
+    return h;
+  }
+
+  /// max(b'', 0) grad d grad d^T. The curvature of d itself has the factor b' <= 0: for two points it is negative and the
+  /// projection drops all of it, for the other features nearly all.
+  TAPE_HD static MatN<12, 12> projected_hessian(const PairState& p, const Jet& b) {
+    const Vec3 n = p.normal();
+    const Mat3 nn = std::fmax(b.curvature, 0.0) * n * n.transpose();
+    MatN<12, 12> h;
+    for (int k = 0; k < 4; ++k)
+      for (int l = 0; l < 4; ++l) h.block<3, 3>(3 * k, 3 * l) = p.closest.weight[k] * p.closest.weight[l] * nn;
+    return h;
+  }
+  /// In s = |ea x eb| the product is m(s) b(d): its 2x2 Hessian by (s, d) is clamped, and the curvature of s, which is that of
+  /// the length of a vector along the cross product's change, stays. The clamp scales s as if |grad s| were |grad d|.
+  TAPE_HD static MatN<12, 12> faded_projected_hessian(const PairState& p, const Jet& b) {
+    const Vec3 v = p.cross();
+    const Real c = v.squaredNorm();
+    if (!(c > 0)) return MatN<12, 12>::Zero();
+    const Vec3 u = v / std::sqrt(c), ea = p.x[1] - p.x[0], eb = p.x[3] - p.x[2];
+    const VecN<12> gs = fade_pull(p, u), gd = distance_gradient(p);
+    const Real scale = std::sqrt(gs.squaredNorm() / gd.squaredNorm()), m_s = 2 * std::sqrt(c) * p.fade.slope;
+    Mat2 product;
+    product(0, 0) = (2 * p.fade.slope + 4 * c * p.fade.curvature) * b.value * scale * scale;
+    product(0, 1) = product(1, 0) = m_s * b.slope * scale;
+    product(1, 1) = p.fade.value * b.curvature;
+    const Mat2 clamped = psd_part(product);
+    const Mat3 across = 2 * p.fade.slope * b.value * (Mat3::Identity() - u * u.transpose()), ka = skew(ea), kb = skew(eb);
+    MatN<12, 12> h = by_vertices(-kb * across * kb, kb * across * ka, -ka * across * ka);
+    const VecN<12> ss = gs / scale;
+    h += ss * (clamped(0, 0) * ss + clamped(0, 1) * gd).transpose() + gd * (clamped(1, 0) * ss + clamped(1, 1) * gd).transpose();
+    return h;
+  }
+
+  /// H_D, d/dx of W^T p where the free parameters stay optimal.
+  TAPE_HD static MatN<12, 12> half_square_hessian(const PairState& p) {
+    const Closest& c = p.closest;
+    MatN<12, 2> Q = MatN<12, 2>::Zero();
+    Vec3 e[2];  // motion of the offset with each free parameter
+    for (int f = 0; f < c.free; ++f) {
+      e[f] = combine(c.slope[f], p.x);
+      for (int k = 0; k < 4; ++k) Q.block<3, 1>(3 * k, f) = c.slope[f][k] * p.offset + c.weight[k] * e[f];
+    }
+    MatN<12, 12> h;
+    for (int k = 0; k < 4; ++k)
+      for (int l = 0; l < 4; ++l) h.block<3, 3>(3 * k, 3 * l) = c.weight[k] * c.weight[l] * Mat3::Identity();
+    if (c.free == 1) h -= Q.col(0) * Q.col(0).transpose() / e[0].squaredNorm();
+    if (c.free == 2) {
+      const Real a = e[0].squaredNorm(), b = e[0].dot(e[1]), d = e[1].squaredNorm(), det = e[0].cross(e[1]).squaredNorm();
+      const VecN<12> q0 = (d * Q.col(0) - b * Q.col(1)) / det, q1 = (a * Q.col(1) - b * Q.col(0)) / det;
+      h -= q0 * Q.col(0).transpose() + q1 * Q.col(1).transpose();
+    }
+    return h;
+  }
+  TAPE_HD static MatN<12, 12> exact_hessian(const PairState& p, const Jet& b) {
+    const VecN<12> gd = distance_gradient(p);
+    const Real m = p.fade.value;
+    MatN<12, 12> h = m * b.slope / p.d * half_square_hessian(p) + m * (b.curvature - b.slope / p.d) * gd * gd.transpose();
+    if (p.fade.slope == 0) return h;
+    const Vec3 v = p.cross();
+    const VecN<12> gc = 2 * fade_pull(p, v);
+    const Mat3 ka = skew(p.x[1] - p.x[0]), kb = skew(p.x[3] - p.x[2]);
+    h += p.fade.curvature * b.value * gc * gc.transpose();
+    h += p.fade.slope * b.slope * (gc * gd.transpose() + gd * gc.transpose());
+    h += 2 * p.fade.slope * b.value * by_vertices(-kb * kb, kb * ka - skew(v), -ka * ka);
+    return h;
+  }
+};
+static_assert(Effect<Barrier>);
+}  // namespace tape

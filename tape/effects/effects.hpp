@@ -1,0 +1,43 @@
+#pragma once
+#include <tuple>
+#include <type_traits>
+
+#include "tape/effects/barrier.hpp"
+#include "tape/effects/bending.hpp"
+#include "tape/effects/body_drive.hpp"
+#include "tape/effects/body_inertia.hpp"
+#include "tape/effects/friction.hpp"
+#include "tape/effects/gravity.hpp"
+#include "tape/effects/inertia.hpp"
+#include "tape/effects/membrane.hpp"
+#include "tape/effects/tether.hpp"
+
+namespace tape {
+/// The one list of effects. Reading and writing scenes, checks, assembly on both back ends, timing, reports and the tests that hold
+/// for all of them follow from it.
+using Effects = std::tuple<Inertia, BodyInertia, BodyDrive, Gravity, Membrane, Bending, Barrier, Friction, Tether>;
+
+/// The settings of one effect, told apart by the effect even where two have none.
+template <class T>
+struct ParamsOf {
+  typename T::Params value;
+};
+template <class... T>
+std::tuple<ParamsOf<T>...> params_of(std::tuple<T...>*);
+using EffectParams = decltype(params_of(static_cast<Effects*>(nullptr)));
+
+template <class T>
+typename T::Params& params(EffectParams& all) {
+  return std::get<ParamsOf<T>>(all).value;
+}
+template <class T>
+const typename T::Params& params(const EffectParams& all) {
+  return std::get<ParamsOf<T>>(all).value;
+}
+
+/// Calls f(std::type_identity<T>) for each effect, in the order of the list.
+template <class F>
+void for_each_effect(const F& f) {
+  [&]<class... T>(std::type_identity<std::tuple<T...>>) { (f(std::type_identity<T>{}), ...); }(std::type_identity<Effects>{});
+}
+}  // namespace tape

@@ -1,0 +1,148 @@
+#include "tests/support/effect_world.hpp"
+
+namespace tape::test {
+namespace {
+template <class T>
+Span<const T> span(const std::vector<T>& v) {
+  return {v.data(), static_cast<int>(v.size())};
+}
+}  // namespace
+
+EffectWorld::EffectWorld(unsigned seed) : generator_(seed) {
+  scene.films.push_back({});
+  scene.films[0].poisson = 0.3;
+  scene.materials = {{"tape", 0.5}, {"rubber", 1.0}};
+  add_strip();
+  add_bodies();
+  add_pairs();
+  add_grips();
+  disturb();
+}
+
+std::vector<int> EffectWorld::add_vertices(const std::vector<Vec3>& positions) {
+  std::vector<int> ids;
+  for (const Vec3& p : positions) {
+    ids.push_back(static_cast<int>(assembly.x.size()));
+    assembly.x.push_back(p);
+    assembly.rest.push_back(p.head<2>());
+    assembly.mass.push_back(random(1e-6, 2e-6));
+    assembly.owner.push_back({assembly.blocks++, -1});
+  }
+  return ids;
+}
+
+void EffectWorld::add_strip() {
+  scene.strips.push_back({});
+  constexpr int kRows = 5, kColumns = 4;
+  constexpr Real kCell = 3e-3;
+  std::vector<Vec3> flat;
+  for (int r = 0; r < kRows; ++r)
+    for (int c = 0; c < kColumns; ++c) flat.push_back(kCell * (Vec3(r, c, 0) + 0.2 * Vec3(random(-1, 1), random(-1, 1), 0)));
+  StripPart part{.film = 0, .first_vertex = 0, .first_triangle = 0, .vertices = kRows * kColumns, .triangles = 0, .columns = kColumns};
+  add_vertices(flat);
+  for (int r = 0; r + 1 < kRows; ++r) {
+    for (int c = 0; c + 1 < kColumns; ++c) {
+      const int a = r * kColumns + c, b = a + kColumns;
+      if (random(0, 1) < 0.5) {
+        assembly.triangles.insert(assembly.triangles.end(), {Index3(a, b, b + 1), Index3(a, b + 1, a + 1)});
+      } else {
+        assembly.triangles.insert(assembly.triangles.end(), {Index3(a, b, a + 1), Index3(b, b + 1, a + 1)});
+      }
+    }
+  }
+  part.triangles = static_cast<int>(assembly.triangles.size());
+  assembly.strips.push_back(part);
+}
+
+void EffectWorld::add_bodies() {
+  for (Motion motion : {Motion::dynamic, Motion::driven}) {
+    Body named;
+    named.name = motion == Motion::dynamic ? "drum" : "arm";
+    named.motion = motion;
+    scene.bodies.push_back(named);
+    BodyPart part;
+    part.motion = motion;
+    part.first_vertex = static_cast<int>(assembly.x.size());
+    part.vertices = 4;
+    const Vec3 far(0, 0, 0.1);
+    add_vertices({far + random_vector(0.01), far + random_vector(0.01), far + random_vector(0.01), far + random_vector(0.01)});
+    assembly.local.resize(assembly.x.size(), Vec3::Zero());
+    for (int v = part.first_vertex; v < part.first_vertex + 4; ++v) assembly.local[static_cast<std::size_t>(v)] = random_vector(0.01);
+    part.block = assembly.blocks;
+    assembly.blocks += 2;
+    const Vec3 spread(random(1e-4, 1e-3), random(1e-4, 1e-3), random(1e-4, 1e-3));
+    const Mat3 R = rotation_exp(random_vector(3));
+    if (motion == Motion::dynamic) part.mass = {0.02, 0.02 * R * spread.cwiseProduct(spread).asDiagonal() * R.transpose()};
+    assembly.bodies.push_back(part);
+  }
+}
+
+void EffectWorld::add_grips() {
+  const std::vector<int> anchor = add_vertices({Vec3(0, 0, 0.02)});
+  scene.grips.resize(2);
+  assembly.grips = {{{0, 1}, {-1, -1}, 100}, {{2}, anchor, 50}};
+  grip_stiffness = {100, 0, 50};  // the second spring is open
+  for (int k = 0; k < 3; ++k) grip_target.push_back(random_vector(0.01));
+}
+
+void EffectWorld::add_pairs() {
+  const Real dhat = scene.dhat();
+  const auto add = [&](PairKind kind, const Real(&p)[4][3], Real height, Real xi) {
+    const Mat3 R = rotation_exp(random_vector(3));
+    const Vec3 shift = random_vector(0.01);
+    std::vector<Vec3> at;
+    for (int k = 0; k < 4; ++k) {
+      const bool first = kind == PairKind::vertex_triangle ? k == 0 : k < 2;
+      at.push_back(shift + R * (2e-3 * Vec3(p[k][0], p[k][1], p[k][2]) + (first ? height : 0) * Vec3(0, 0, 1)));
+    }
+    const std::vector<int> v = add_vertices(at);
+    const Real length4 = (at[1] - at[0]).squaredNorm() * (at[3] - at[2]).squaredNorm();
+    pairs.push_back({{v[0], v[1], v[2], v[3]}, kind, 1, xi, 4e-6, kind == PairKind::edge_edge ? 1e-3 * length4 : 0});
+  };
+  for (Real xi : {0.0, 9e-5}) {
+    for (Real gap : {0.02, 0.3, 0.9}) {
+      const Real h = xi + gap * dhat;
+      add(PairKind::vertex_triangle, {{0.3, 0.3, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, h, xi);               // face
+      add(PairKind::vertex_triangle, {{0.4, -1e-4, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, h, xi);             // edge
+      add(PairKind::vertex_triangle, {{-1e-4, -1e-4, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, h, xi);           // point
+      add(PairKind::edge_edge, {{-0.3, 0.1, 0}, {0.6, 0, 0}, {0, -0.5, 0}, {0.1, 0.5, 0}}, h, xi);           // edge-edge
+      add(PairKind::edge_edge, {{-0.5, 0, 0}, {0.5, 0.02, 0}, {-0.4, -0.006, 0}, {0.6, 0.003, 0}}, h, xi);   // nearly parallel
+      add(PairKind::edge_edge, {{1e-4, 0, 0}, {0.6, 0.01, 0}, {-0.5, 0, 1e-3}, {-1e-4, 0.001, 0}}, h, xi);   // end to end, nearly parallel
+      add(PairKind::edge_edge, {{0.05, 1e-4, 0}, {0.1, 0.6, 0}, {-0.4, -1e-5, 0}, {0.5, -1e-5, 0}}, h, xi);  // end to edge
+    }
+  }
+  mu = {0.5, 0.7, 0.7, 1.0};
+}
+
+void EffectWorld::disturb() {
+  x = x_start = x_tilde = assembly.x;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const bool strip = static_cast<int>(i) < assembly.strips[0].vertices;
+    if (strip) x[i] += random_vector(1e-3);
+    const Real slip = i / 4 % 2 == 0 ? 2e-5 : 2e-7;  // eps_v dt = 1e-6: every other pair slides
+    x_start[i] = x[i] + random_vector(slip);
+    x_tilde[i] = x[i] + random_vector(1e-3);
+  }
+  for (std::size_t b = 0; b < assembly.bodies.size(); ++b) {
+    body_target.push_back({rotation_exp(random_vector(3)), random_vector(0.01)});
+    body.push_back({rotation_exp(random_vector(0.8)) * body_target[b].rotation, body_target[b].position + random_vector(1e-3)});
+  }
+}
+
+StateView EffectWorld::view() const {
+  return {dt,         span(x),           span(x_start),     span(x_tilde),        span(assembly.owner),
+          span(body), span(body_target), span(grip_target), span(grip_stiffness), span(mu)};
+}
+StateView EffectWorld::start_view() const {
+  StateView s = view();
+  s.x = s.x_start;
+  return s;
+}
+
+void EffectWorld::move(const Pose& by) {
+  for (std::vector<Vec3>* points : {&x, &x_start, &x_tilde, &grip_target})
+    for (Vec3& p : *points) p = apply(by, p);
+  for (std::vector<Pose>* poses : {&body, &body_target})
+    for (Pose& p : *poses) p = {by.rotation * p.rotation, apply(by, p.position)};
+}
+}  // namespace tape::test
