@@ -17,6 +17,8 @@
 
 namespace tape::on_cpu {
 inline bool available() { return true; }
+/// Whether Span of this side points to memory of the host.
+inline constexpr bool kHostMemory = true;
 
 /// Array in the memory of this side. Grows, never shrinks its capacity; contents after `resize` are unspecified.
 template <class T>

@@ -18,6 +18,8 @@ inline bool available() {
   int n = 0;
   return cudaGetDeviceCount(&n) == cudaSuccess && n > 0;
 }
+/// Whether Span of this side points to memory of the host.
+inline constexpr bool kHostMemory = false;
 inline void require(cudaError_t status) {
   if (status != cudaSuccess) throw CheckFailed(std::string("CUDA: ") + cudaGetErrorString(status));
 }

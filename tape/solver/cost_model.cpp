@@ -1,0 +1,132 @@
+#include "tape/solver/cost_model.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace tape {
+namespace {
+// Measured by tests/bench/solver_bench.cpp on one thread of a 2.4-GHz core with AVX2, g++ 12, OpenBLAS 0.3.21 (README: cost model).
+constexpr Real kBandRate = 4e9;             // [flop/s] band factorisation, kd near 50
+constexpr Real kStreamRate = 3e9;           // [flop/s] SpMV and triangular solves
+constexpr Real kAnalysisPerBlock = 1e-6;    // [s] ordering and symbolic analysis per stored block
+constexpr Real kFactorPerEntry = 40e-9;     // [s] Cholesky per entry of the envelope: assembly and small supernodes
+constexpr Real kDenseRate = 60e9;           // [flop/s] Cholesky per flop of the envelope, of which dissection needs about half
+constexpr Real kJacobiIterations = 800;     // typical of strips and rolls
+constexpr Real kExactIterations = 2;        // strip preconditioner, nothing dropped
+constexpr Real kDropIterations = 8;         // ... some blocks dropped: so many,
+constexpr Real kDropShareIterations = 500;  // ... and so many times the dropped share of all blocks
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+struct Graph {
+  std::vector<int> begin, to;
+};
+/// All blocks but those of bodies as a graph; bodies couple to many and are eliminated last.
+Graph graph_without_bodies(const HostBlocks& a, const SystemLayout& layout) {
+  std::vector<bool> body(at(a.n), false);
+  for (int b : layout.body_blocks) body[at(b)] = body[at(b + 1)] = true;
+  Graph g;
+  g.begin.assign(at(a.n) + 1, 0);
+  const auto for_edges = [&](auto&& f) {
+    for (int i = 0; i < a.n; ++i)
+      for (int k = a.row_begin[at(i)]; k < a.row_begin[at(i) + 1]; ++k)
+        if (const int j = a.col[at(k)]; j != i && !body[at(i)] && !body[at(j)]) f(i, j), f(j, i);
+  };
+  for_edges([&](int i, int) { ++g.begin[at(i) + 1]; });
+  for (int i = 0; i < a.n; ++i) g.begin[at(i) + 1] += g.begin[at(i)];
+  g.to.resize(at(g.begin[at(a.n)]));
+  std::vector<int> next(g.begin.begin(), g.begin.end() - 1);
+  for_edges([&](int i, int j) { g.to[at(next[at(i)]++)] = j; });
+  return g;
+}
+
+/// Breadth-first order of the component of `root`, appended to `order`; place[i] is set for each.
+void visit(const Graph& g, int root, std::vector<int>& order, std::vector<int>& place) {
+  std::size_t head = order.size();
+  place[at(root)] = static_cast<int>(order.size());
+  order.push_back(root);
+  for (; head < order.size(); ++head)
+    for (int e = g.begin[at(order[head])]; e < g.begin[at(order[head]) + 1]; ++e)
+      if (const int j = g.to[at(e)]; place[at(j)] < 0) {
+        place[at(j)] = static_cast<int>(order.size());
+        order.push_back(j);
+      }
+}
+
+/// Time of a Cholesky factorisation inside the envelope of the Cuthill-McKee order: near that of nested dissection on graphs
+/// that are long and thin, as strips, folds and rolls are.
+Real envelope_seconds(const Graph& g) {
+  const std::size_t n = g.begin.size() - 1;
+  std::vector<int> order, place(n, -1);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (place[i] >= 0) continue;
+    const std::size_t first = order.size();
+    visit(g, static_cast<int>(i), order, place);
+    const int far = order.back();  // start again from the far end: a pseudo-peripheral block
+    for (std::size_t k = first; k < order.size(); ++k) place[at(order[k])] = -1;
+    order.resize(first);
+    visit(g, far, order, place);
+  }
+  Real seconds = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    int reach = 0;
+    for (int e = g.begin[i]; e < g.begin[i + 1]; ++e) reach = std::max(reach, place[i] - place[at(g.to[at(e)])]);
+    const Real width = 3.0 * reach + 2;
+    seconds += 3 * width * (kFactorPerEntry + width / kDenseRate);
+  }
+  return seconds;
+}
+
+struct Sizes {
+  Real unknowns = 0, border = 0;  // of the strips, of the rest
+  Real band_flops = 0, band_entries = 0;
+  Real dropped = 0;  // blocks of the upper triangle outside the bands
+};
+Sizes strip_sizes(const HostBlocks& a, const SystemLayout& layout, const std::vector<int>& strip_of) {
+  std::vector<int> width(layout.strips.size(), 0);
+  const auto for_strip_blocks = [&](auto&& f) {
+    for (int i = 0; i < a.n; ++i)
+      for (int k = a.row_begin[at(i)]; k < a.row_begin[at(i) + 1]; ++k)
+        if (strip_of[at(i)] >= 0 && strip_of[at(a.col[at(k)])] >= 0) f(k, strip_of[at(i)], strip_of[at(a.col[at(k)])], a.col[at(k)] - i);
+  };
+  for_strip_blocks([&](int k, int strip, int other, int reach) {
+    if (strip == other && a.fixed[at(k)] >= 0) width[at(strip)] = std::max(width[at(strip)], reach);
+  });
+  Sizes s;
+  for_strip_blocks([&](int, int strip, int other, int reach) { s.dropped += strip != other || reach > width[at(strip)]; });
+  for (std::size_t b = 0; b < width.size(); ++b) {
+    const Real n = 3.0 * layout.strips[b].blocks, kd = 3.0 * width[b] + 2;
+    s.unknowns += n;
+    s.band_flops += n * kd * kd;
+    s.band_entries += n * kd;
+  }
+  s.border = 3.0 * a.n - s.unknowns;
+  return s;
+}
+}  // namespace
+
+LinearCosts linear_costs(const HostBlocks& a, const SystemLayout& layout) {
+  std::vector<int> strip_of(at(a.n), -1);
+  for (std::size_t s = 0; s < layout.strips.size(); ++s)
+    for (int i = 0; i < layout.strips[s].blocks; ++i) strip_of[at(layout.strips[s].first_block + i)] = static_cast<int>(s);
+  const Sizes s = strip_sizes(a, layout, strip_of);
+  const Real blocks = static_cast<Real>(a.col.size()), multiply = 36 * blocks;
+  const auto dense_border = [&](Real m) { return s.unknowns * m * m + m * m * m / 3; };  // [flop] Schur complement and its factor
+  const Real sweep = 4 * (s.band_entries + s.unknowns * s.border + s.border * s.border);
+  LinearCosts costs;
+  costs.cholesky = kAnalysisPerBlock * blocks + envelope_seconds(graph_without_bodies(a, layout)) +
+                   dense_border(6.0 * static_cast<Real>(layout.body_blocks.size())) / kBandRate;
+  costs.pcg_jacobi = kJacobiIterations * (multiply + 18.0 * a.n) / kStreamRate;
+  const Real iterations = s.dropped > 0 ? kDropIterations + kDropShareIterations * s.dropped / blocks : kExactIterations;
+  costs.pcg_strip =
+      (s.band_flops + 2 * s.band_entries * s.border + dense_border(s.border)) / kBandRate + iterations * (multiply + sweep) / kStreamRate;
+  return costs;
+}
+
+LinearKind choose(const HostBlocks& pattern, const SystemLayout& layout, bool strip_available) {
+  const LinearCosts costs = linear_costs(pattern, layout);
+  const bool strip = strip_available && !layout.strips.empty();
+  if (strip && costs.pcg_strip <= std::min(costs.cholesky, costs.pcg_jacobi)) return LinearKind::pcg_strip;
+  return costs.cholesky <= costs.pcg_jacobi ? LinearKind::cholesky : LinearKind::pcg_jacobi;
+}
+}  // namespace tape

@@ -1,0 +1,9 @@
+#include "tape/solver/linear_params.hpp"
+
+namespace tape {
+void check(const LinearParams& params, bool strip_available) {
+  require_valid(params, "solver");
+  if (params.linear == LinearKind::pcg_strip && !strip_available)
+    throw SettingsError("solver.linear", to_text(params.linear), "auto, cholesky or pcg_jacobi on this back end");
+}
+}  // namespace tape
