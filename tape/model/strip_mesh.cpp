@@ -11,7 +11,7 @@
 
 namespace tape {
 namespace {
-constexpr Real kMaxCells = 1e6;
+constexpr Real kMaxCells = 5e5;
 constexpr Real kJitter = 0.25;  // of a cell, each way
 constexpr Real kShear = 1e-3;   // makes one diagonal of a rectangular lattice cell Delaunay and the other not
 

@@ -1,0 +1,183 @@
+#include "cosim/scene/read_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cosim/scene/bodies.hpp"
+#include "cosim/scene/pose.hpp"
+#include "cosim/scene/script.hpp"
+#include "tape/model/strip_mesh.hpp"
+
+namespace cosim {
+namespace {
+using tape::InputError;
+using tape::Scene;
+using tape::Strip;
+
+class SceneReader {
+ public:
+  explicit SceneReader(const SceneFile& file) : file_(file) {}
+
+  Scene read() {
+    scene_.name = file_["scene"].text_or(file_.path().stem().string());
+    file_.read("time", scene_.time);
+    file_.read("contact", scene_.contact);
+    scene_.gravity = file_["gravity"].vector_or(scene_.gravity, kPlace, "m/s^2");
+    scene_.seed = file_["seed"].integer_or(scene_.seed, Range::non_negative());
+    materials();
+    if (const Reader film = file_["film"]) scene_.films.push_back(load_film(film, file_.path()));
+    strips();
+    bodies();
+    for (const Reader& entry : file_["interfaces"].items()) interface(entry);
+    read_script(file_["script"], meshes_, scene_);
+    return std::move(scene_);
+  }
+
+ private:
+  void materials() {
+    const Reader section = file_["materials"];
+    for (const std::string& name : section.keys()) section[name].read(scene_.materials[material(name)]);
+  }
+  /// Index of a material, which is made if there is none of this name.
+  int material(const std::string& name) {
+    for (std::size_t i = 0; i < scene_.materials.size(); ++i)
+      if (scene_.materials[i].name == name) return static_cast<int>(i);
+    scene_.materials.push_back({name});
+    return static_cast<int>(scene_.materials.size()) - 1;
+  }
+  void claim_name(const std::string& name, const Reader& where) const {
+    if (name.find_first_of(". ") != std::string::npos) where.fail("a name holds neither dots nor spaces");
+    const auto same = [&](const auto& object) { return object.name == name; };
+    if (std::any_of(scene_.strips.begin(), scene_.strips.end(), same) || std::any_of(scene_.bodies.begin(), scene_.bodies.end(), same))
+      where.fail("there is a thing named " + name + " already");
+  }
+
+  void strips() {
+    const Reader one = file_["strip"], list = file_["strips"];
+    if (one && list) list.fail("give either strip or strips");
+    if (one) strip(one);
+    for (const Reader& entry : list.items()) strip(entry);
+  }
+  void strip(const Reader& section) {
+    Strip strip;
+    const std::size_t count = scene_.strips.size();
+    const Reader name = section["name"];
+    strip.name = name.text_or("tape" + (count ? std::to_string(count + 1) : ""));
+    claim_name(strip.name, name ? name : section);
+    if (const Reader film = section["film"]) {
+      strip.film = static_cast<int>(scene_.films.size());
+      scene_.films.push_back(load_film(film, file_.path()));
+    } else if (!file_["film"]) {
+      file_["film"].fail("missing; the name of a film in data/tapes");
+    }
+    section.read(strip.mesh);
+    strip.pose = read_pose(section);
+    for (const Reader& piece : section["path"].items()) strip.path.push_back(path_piece(piece));
+    strip.velocity = section["velocity"].vector_or(strip.velocity, kPlace, "m/s");
+    strip.material = material(section["material"].text_or("default"));
+    try {
+      meshes_.push_back(make_strip_mesh(strip.mesh, scene_.films[strip.film].width, scene_.seed));
+    } catch (const InputError& e) {
+      section.fail(e.what());
+    }
+    scene_.strips.push_back(std::move(strip));
+  }
+  static tape::PathPiece path_piece(const Reader& piece) {
+    const Reader line = piece["line"], arc = piece["arc"];
+    if (line.exists() == arc.exists()) piece.fail("needs either line: length or arc: radius");
+    if (line) return {line.number(kSize, "m"), 0};
+    const Reader angle = piece["angle_deg"];
+    const Real turn = kRadian * angle.number(kAnyAngle, "deg");
+    if (turn == 0) angle.fail("an arc needs an angle");
+    return {arc.number(kSize, "m") * std::fabs(turn), turn};
+  }
+
+  void bodies() {
+    const Reader section = file_["bodies"];
+    for (const std::string& name : section.keys()) {
+      const Reader body = section[name];
+      claim_name(name, body);
+      scene_.bodies.push_back(read_body(body, name, file_.path()));
+      scene_.bodies.back().material = material(body["material"].text_or("default"));
+    }
+  }
+
+  /// Friction between two things, each a material or an object. A later entry of the list overrides an earlier one.
+  void interface(const Reader& entry) {
+    const std::vector<Reader> between = entry["between"].items();
+    if (between.size() != 2) entry["between"].fail("must be a list of two names, of materials or of things");
+    const std::vector<int> first = side(between[0]), second = side(between[1]);
+    const Real mu = entry["mu"].number(Range::non_negative(), "");
+    for (int a : first)
+      for (int b : second) set_friction(a, b, mu);
+  }
+  /// The materials that a name stands for. An object that shares its material gets its own copy, so that the others keep theirs.
+  std::vector<int> side(const Reader& name) {
+    std::vector<std::string> objects, all;
+    for (const Strip& s : scene_.strips) objects.push_back(s.name);
+    for (const tape::Body& b : scene_.bodies) objects.push_back(b.name);
+    all = objects;
+    for (const tape::Material& m : scene_.materials) all.push_back(m.name);
+    const std::size_t chosen = choose(name, all);
+    if (chosen < objects.size()) return {own_material(chosen)};
+    std::vector<int> same;  // with the copies that objects have of it
+    for (std::size_t i = 0; i < scene_.materials.size(); ++i)
+      if (const std::string& m = scene_.materials[i].name; m == all[chosen] || m.starts_with(all[chosen] + " of "))
+        same.push_back(static_cast<int>(i));
+    return same;
+  }
+  int own_material(std::size_t object) {
+    const auto material_of = [&](std::size_t i) -> int& {
+      const std::size_t strips = scene_.strips.size();
+      return i < strips ? scene_.strips[i].material : scene_.bodies[i - strips].material;
+    };
+    int& mine = material_of(object);
+    int users = 0;
+    for (std::size_t i = 0; i < scene_.strips.size() + scene_.bodies.size(); ++i) users += material_of(i) == mine;
+    if (users == 1) return mine;
+    const int copy = static_cast<int>(scene_.materials.size());
+    const std::size_t strips = scene_.strips.size();
+    const std::string& owner = object < strips ? scene_.strips[object].name : scene_.bodies[object - strips].name;
+    scene_.materials.push_back({scene_.materials[mine].name + " of " + owner, scene_.materials[mine].mu});
+    for (const tape::FrictionPair& f : std::vector<tape::FrictionPair>(scene_.frictions)) {
+      if (f.a != mine && f.b != mine) continue;
+      scene_.frictions.push_back({f.a == mine ? copy : f.a, f.b == mine && f.a != mine ? copy : f.b, f.mu});
+      if (f.a == f.b) scene_.frictions.push_back({copy, copy, f.mu});
+    }
+    return mine = copy;
+  }
+  void set_friction(int a, int b, Real mu) {
+    for (tape::FrictionPair& f : scene_.frictions)
+      if ((f.a == a && f.b == b) || (f.a == b && f.b == a)) {
+        f.mu = mu;
+        return;
+      }
+    scene_.frictions.push_back({a, b, mu});
+  }
+
+  const SceneFile& file_;
+  Scene scene_;
+  std::vector<tape::StripMesh> meshes_;  // [strips]
+};
+}  // namespace
+
+Scene read_scene(const SceneFile& file) { return SceneReader(file).read(); }
+
+tape::Film load_film(const Reader& asked_by, const std::filesystem::path& scene_file) {
+  const Reader name = asked_by.is_map() ? asked_by["from"] : asked_by;
+  const std::string text = name.text();
+  const std::filesystem::path found = find_file(scene_file, "tapes", text.ends_with(".yaml") ? text : text + ".yaml");
+  if (found.empty()) name.fail("no such film beside the scene, above it, or in data/tapes");
+  const SceneFile file = SceneFile::load(found);
+  tape::Film film;
+  film.name = file["film"].text_or(found.stem().string());
+  const Reader values = file.root();
+  film.fields([&](const char* key, auto&, const char*, Range, const char*) {
+    if (!values[key]) values[key].fail("missing");
+  });
+  values.read(film);
+  file.require_all_used();
+  if (asked_by.is_map()) asked_by.read(film);
+  return film;
+}
+}  // namespace cosim

@@ -1,0 +1,164 @@
+#include "cosim/scene/script.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cosim/scene/pose.hpp"
+
+namespace cosim {
+namespace {
+using tape::Grip;
+using tape::GripTarget;
+
+constexpr Real kForever = 1e6;  // [s]
+const Range kTime = Range::closed(0, kForever);
+
+class Compiler {
+ public:
+  Compiler(const std::vector<tape::StripMesh>& meshes, tape::Scene& scene) : meshes_(meshes), scene_(scene) {}
+
+  void entry(const Reader& entry) {
+    if (!entry.is_map()) entry.fail("must be a section such as {wait: 1}");
+    const Real start = entry["at"].number_or(now_, kTime, "s");
+    if (entry["grip"]) {
+      grip(entry, start);
+    } else if (entry["move"]) {
+      move(entry, start);
+    } else if (entry["release"]) {
+      release(entry, start);
+    } else if (const Reader wait = entry["wait"]) {
+      now_ = start + wait.number(kTime, "s");
+    } else {
+      entry.fail("must hold one of grip, move, release, wait");
+    }
+  }
+
+ private:
+  void grip(const Reader& entry, Real start) {
+    Grip grip;
+    grip.what = target(entry);
+    const Reader name = entry["as"];
+    grip.name = name.text_or(entry["grip"].is_map() ? grip.what.object : entry["grip"].text());
+    if (find(grip.name)) (name ? name : entry["grip"]).fail("there is a grip of this name already");
+    grip.stiffness = entry["stiffness"].number_or(0, Range::positive(), "N/m");
+    grip.start = start;
+    if (const Reader to = entry["to"]) {
+      grip.to = scene_.bodies[choose(to, body_names())].name;
+      if (grip.to == grip.what.object) to.fail("a body cannot be gripped to itself");
+    }
+    scene_.grips.push_back(std::move(grip));
+    now_ = start;
+  }
+
+  void move(const Reader& entry, Real start) {
+    const Reader name = entry["move"];
+    Grip& grip = held(name, start);
+    if (!grip.to.empty()) name.fail("this grip ties to " + grip.to + " and moves with it");
+    const Vec3 by = entry["by"].vector(kPlace, "m");
+    const Reader speed = entry["speed"], duration = entry["duration"];
+    if (speed.exists() == duration.exists()) entry.fail("needs either speed or duration");
+    const Real time = speed ? by.norm() / speed.number(Range::above(0, 1e4), "m/s") : duration.number(Range::above(0, kForever), "s");
+    if (!(time > 0)) entry["by"].fail("a move with a speed needs a length");
+    if (grip.motion.empty()) grip.motion.push_back({grip.start, Vec3::Zero()});
+    const Grip::Key last = grip.motion.back();
+    if (start < last.time)
+      name.fail("starts at " + tape::to_text(start) + " s, before the move ahead of it ends at " + tape::to_text(last.time) + " s");
+    if (start > last.time) grip.motion.push_back({start, last.offset});
+    grip.motion.push_back({start + time, last.offset + by});
+    now_ = entry["wait"].flag_or(true) ? start + time : start;
+  }
+
+  void release(const Reader& entry, Real start) {
+    held(entry["release"], start).end = start;
+    now_ = start;
+  }
+
+  /// The grip of that name, which must hold at `time`.
+  Grip& held(const Reader& name, Real time) {
+    std::vector<std::string> names;
+    for (const Grip& g : scene_.grips) names.push_back(g.name);
+    if (names.empty()) name.fail("no grip has been made yet");
+    Grip& grip = scene_.grips[choose(name, names)];
+    if (time < grip.start) name.fail("is gripped at " + tape::to_text(grip.start) + " s only");
+    if (time >= grip.end) name.fail("was released at " + tape::to_text(grip.end) + " s");
+    return grip;
+  }
+  const Grip* find(const std::string& name) const {
+    const auto it = std::find_if(scene_.grips.begin(), scene_.grips.end(), [&](const Grip& g) { return g.name == name; });
+    return it == scene_.grips.end() ? nullptr : &*it;
+  }
+
+  GripTarget target(const Reader& entry) const {
+    const Reader what = entry["grip"];
+    if (what.is_map()) return points_of(what);
+    const std::string text = what.text();
+    const std::size_t dot = text.rfind('.');
+    for (std::size_t s = 0; s < scene_.strips.size() && dot != std::string::npos; ++s)
+      if (scene_.strips[s].name == text.substr(0, dot)) return part_of(s, text.substr(dot + 1), entry);
+    std::vector<std::string> names = body_names();
+    for (const tape::Strip& strip : scene_.strips)
+      for (const char* part : {".tip", ".root", ".rows"}) names.push_back(strip.name + part);
+    return corners_of(scene_.bodies[choose(what, names)], what);
+  }
+
+  GripTarget part_of(std::size_t s, const std::string& part, const Reader& entry) const {
+    const tape::Strip& strip = scene_.strips[s];
+    const Real cell = tape::cell_length(strip.mesh, scene_.films[strip.film].width);
+    GripTarget target{.object = strip.name, .vertices = {}, .points = {}};
+    if (part == "root") {
+      target.vertices = root_vertices(meshes_[s], cell / 4);
+    } else if (part == "tip") {
+      target.vertices = tip_vertices(meshes_[s], cell / 4);
+    } else if (part == "rows") {
+      const int last = static_cast<int>(std::round(strip.mesh.length / cell));
+      const Reader rows = entry["rows"];
+      const std::vector<Real> range = rows.numbers(2, Range::closed(-last - 1, last), "rows; -1 is the last");
+      const auto from_start = [&](Real row) { return std::round(row < 0 ? row + last + 1 : row); };
+      target.vertices = vertices_between(meshes_[s], (from_start(range[0]) - 0.4) * cell, (from_start(range[1]) + 0.4) * cell);
+      if (target.vertices.empty()) rows.fail("there are no vertices");
+    } else {
+      entry["grip"].fail("unknown part of a strip (allowed: tip, root, rows)");
+    }
+    return target;
+  }
+  /// Points of a body: `point` alone leaves its rotation free.
+  GripTarget points_of(const Reader& what) const {
+    const tape::Body& body = scene_.bodies[choose(what["body"], body_names())];
+    require_dynamic(body, what["body"]);
+    GripTarget target{.object = body.name, .vertices = {}, .points = {}};
+    for (const Reader& point : what["points"].items()) target.points.push_back(point.vector(kPlace, "m"));
+    if (const Reader point = what["point"]) target.points.push_back(point.vector(kPlace, "m"));
+    if (target.points.empty()) what.fail("needs point: [x, y, z] or points: [[x, y, z], ...], in the frame of the body's mesh");
+    return target;
+  }
+  /// The corners of a body's box: holds its position and its rotation.
+  GripTarget corners_of(const tape::Body& body, const Reader& what) const {
+    require_dynamic(body, what);
+    Vec3 low = body.mesh.vertices[0], high = low;
+    for (const Vec3& v : body.mesh.vertices) low = low.cwiseMin(v), high = high.cwiseMax(v);
+    GripTarget target{.object = body.name, .vertices = {}, .points = {}};
+    for (Real x : {low.x(), high.x()})
+      for (Real y : {low.y(), high.y()})
+        for (Real z : {low.z(), high.z()}) target.points.push_back({x, y, z});
+    return target;
+  }
+  static void require_dynamic(const tape::Body& body, const Reader& where) {
+    if (body.motion != tape::Motion::dynamic) where.fail("the body is " + to_text(body.motion) + "; only a dynamic one can be gripped");
+  }
+  std::vector<std::string> body_names() const {
+    std::vector<std::string> names;
+    for (const tape::Body& body : scene_.bodies) names.push_back(body.name);
+    return names;
+  }
+
+  const std::vector<tape::StripMesh>& meshes_;
+  tape::Scene& scene_;
+  Real now_ = 0;  // [s]
+};
+}  // namespace
+
+void read_script(const Reader& script, const std::vector<tape::StripMesh>& meshes, tape::Scene& scene) {
+  Compiler compiler(meshes, scene);
+  for (const Reader& entry : script.items()) compiler.entry(entry);
+}
+}  // namespace cosim
