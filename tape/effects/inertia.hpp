@@ -5,6 +5,7 @@ namespace tape {
 /// Inertia of strip vertices, implicit Euler:  E = m |x - x_tilde|^2 / (2 dt^2),  x_tilde = x + dt v.
 struct Inertia {
   static constexpr std::string_view name = "inertia";
+  static constexpr bool free_vertices = true;
   static constexpr bool incremental = true;
   using Params = NoParams;
   struct Element {

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <atomic>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>

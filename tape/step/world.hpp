@@ -8,7 +8,7 @@
 #include "tape/contact/surface.hpp"
 #include "tape/effects/effects.hpp"
 #include "tape/model/scene.hpp"
-#include "tape/solver/linear_solver.hpp"
+#include "tape/solver/linear_params.hpp"
 #include "tape/solver/params.hpp"
 
 namespace tape {
@@ -51,6 +51,8 @@ struct State {
   Real time = 0;                  ///< [s]
   std::vector<Vec3> x, v;         ///< [strip vertices] m, m/s
   std::vector<BodyState> bodies;  ///< [bodies]
+  std::vector<Vec3> grip_base;    ///< [springs] m, where the target of each spring was when its grip closed
+  std::vector<int> grip_closed;   ///< [grips] 1 once it has closed
 
   static State start(const World& world);
   /// 64-bit FNV-1a of all bits above, as 16 hexadecimal digits.
@@ -67,6 +69,8 @@ struct Drive {
   std::vector<Pose> body_target;     ///< [bodies] X_WB; dynamic bodies: where their inertia takes them
   static Drive at(const World& world, const State& state, Real dt);
 };
+/// Closes the grips whose time has come: each spring's target starts where its vertex is now.
+void close_grips(const World& world, State& state);
 
 /// Writes and reads the state exactly (HDF5, by a temporary name), with what is needed to refuse a snapshot of another scene.
 void save_snapshot(const std::string& file, const World& world, const State& state);

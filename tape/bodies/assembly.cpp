@@ -1,0 +1,145 @@
+#include "tape/bodies/assembly.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tape/core/error.hpp"
+#include "tape/model/mass_properties.hpp"
+
+namespace tape {
+namespace {
+template <class T>
+const T& at(const std::vector<T>& values, int i) {
+  return values[static_cast<std::size_t>(i)];
+}
+
+int add_vertex(Assembly& a, const Vec3& x, VertexOwner owner, const Vec3& local = Vec3::Zero()) {
+  a.x.push_back(x);
+  a.v.push_back(Vec3::Zero());
+  a.rest.push_back(Vec2::Zero());
+  a.owner.push_back(owner);
+  a.local.push_back(local);
+  a.mass.push_back(0);
+  return static_cast<int>(a.x.size()) - 1;
+}
+
+void add_strip(Assembly& a, const Scene& scene, const Strip& strip) {
+  const Film& film = at(scene.films, strip.film);
+  const StripMesh mesh = make_strip_mesh(strip.mesh, film.width, scene.seed);
+  const std::vector<Vec3> x = place(mesh, strip);
+  StripPart part{.film = strip.film,
+                 .first_vertex = static_cast<int>(a.x.size()),
+                 .first_triangle = static_cast<int>(a.triangles.size()),
+                 .vertices = static_cast<int>(x.size()),
+                 .triangles = static_cast<int>(mesh.triangles.size()),
+                 .columns = mesh.columns};
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const int v = add_vertex(a, x[i], {.block = a.blocks++, .body = -1});
+    a.v[static_cast<std::size_t>(v)] = strip.velocity;
+    a.rest[static_cast<std::size_t>(v)] = mesh.rest[i];
+  }
+  for (const Index3& t : mesh.triangles) {
+    a.triangles.push_back(t.array() + part.first_vertex);
+    const Vec2 e1 = at(mesh.rest, t[1]) - at(mesh.rest, t[0]), e2 = at(mesh.rest, t[2]) - at(mesh.rest, t[0]);
+    const Real third = (e1.x() * e2.y() - e1.y() * e2.x()) / 6 * film.thickness * film.density;
+    for (int i : t) a.mass[static_cast<std::size_t>(part.first_vertex + i)] += third;
+  }
+  a.strips.push_back(part);
+}
+
+BodyMass body_mass(const Body& body, Vec3& centre) {
+  const MassProperties unit = mass_properties(body.mesh);
+  if (!(unit.volume > 0)) throw InputError("body '" + body.name + "': a dynamic body needs a closed mesh with outward normals");
+  centre = unit.centre;
+  const Real density = body.mass > 0 ? body.mass / unit.volume : body.density;
+  return {density * unit.volume, density * unit.second};
+}
+
+void add_body(Assembly& a, const Body& body, int index) {
+  BodyPart part;
+  part.motion = body.motion;
+  part.first_vertex = static_cast<int>(a.x.size());
+  part.vertices = static_cast<int>(body.mesh.vertices.size());
+  part.first_triangle = static_cast<int>(a.triangles.size());
+  part.triangles = static_cast<int>(body.mesh.triangles.size());
+  if (body.motion == Motion::dynamic) part.mass = body_mass(body, part.mesh_offset);
+  if (body.motion != Motion::fixed) {
+    part.block = a.blocks;
+    a.blocks += 2;
+  }
+  part.start = {body.pose.rotation, apply(body.pose, part.mesh_offset)};
+  part.velocity = body.velocity;
+  part.angular_velocity = body.angular_velocity;
+  for (const Vec3& y : body.mesh.vertices)
+    add_vertex(a, apply(body.pose, y), {part.block, part.block < 0 ? -1 : index}, y - part.mesh_offset);
+  for (const Index3& t : body.mesh.triangles) a.triangles.push_back(t.array() + part.first_vertex);
+  a.bodies.push_back(part);
+}
+
+int index_of(const Scene& scene, const std::string& body) {
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+    if (scene.bodies[b].name == body) return static_cast<int>(b);
+  return -1;
+}
+
+/// A point fixed to a body that no surface has.
+int add_marker(Assembly& a, int body, const Vec3& x) {
+  const BodyPart& part = at(a.bodies, body);
+  return add_vertex(a, x, {part.block, part.block < 0 ? -1 : body}, part.start.rotation.transpose() * (x - part.start.position));
+}
+
+/// Vertices that a grip holds; points of bodies become markers.
+std::vector<int> held_vertices(Assembly& a, const Scene& scene, const Grip& grip) {
+  std::vector<int> held;
+  for (std::size_t s = 0; s < scene.strips.size(); ++s) {
+    if (scene.strips[s].name != grip.what.object) continue;
+    const StripPart& part = a.strips[s];
+    for (int v : grip.what.vertices) {
+      if (v < 0 || v >= part.vertices)
+        throw InputError("grip '" + grip.name + "': strip '" + grip.what.object + "' has no vertex " + std::to_string(v));
+      held.push_back(part.first_vertex + v);
+    }
+    return held;
+  }
+  const int body = index_of(scene, grip.what.object);
+  if (body < 0) throw InputError("grip '" + grip.name + "': no strip or body is named '" + grip.what.object + "'");
+  if (at(scene.bodies, body).motion != Motion::dynamic)
+    throw InputError("grip '" + grip.name + "': body '" + grip.what.object + "' is not dynamic");
+  for (const Vec3& p : grip.what.points) held.push_back(add_marker(a, body, apply(at(scene.bodies, body).pose, p)));
+  return held;
+}
+
+void add_grip(Assembly& a, const Scene& scene, const Grip& grip) {
+  Assembly::GripPart part{.vertices = held_vertices(a, scene, grip), .anchors = {}, .stiffness = 0};
+  if (part.vertices.empty()) throw InputError("grip '" + grip.name + "' holds nothing");
+  const int to = grip.to.empty() ? -1 : index_of(scene, grip.to);
+  if (!grip.to.empty() && to < 0) throw InputError("grip '" + grip.name + "': no body is named '" + grip.to + "'");
+  for (int v : part.vertices) part.anchors.push_back(to < 0 ? -1 : add_marker(a, to, at(a.x, v)));
+  part.stiffness = grip.stiffness / static_cast<Real>(part.vertices.size());
+  a.grips.push_back(std::move(part));
+}
+
+/// Stiffness of a grip that names none: holds a thousand times the weight of all that moves within a micrometre.
+void choose_stiffness(Assembly& a) {
+  Real total = 0;
+  for (Real m : a.mass) total += m;
+  for (Assembly::GripPart& grip : a.grips)
+    if (grip.stiffness == 0) grip.stiffness = 1e3 * total * 9.81 / 1e-6 / static_cast<Real>(grip.vertices.size());
+}
+}  // namespace
+
+Assembly assemble(const Scene& scene) {
+  Assembly a;
+  for (const Strip& strip : scene.strips) add_strip(a, scene, strip);
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) add_body(a, scene.bodies[b], static_cast<int>(b));
+  a.surface_vertices = static_cast<int>(a.x.size());
+  for (std::size_t b = 0; b < a.bodies.size(); ++b) {
+    if (a.bodies[b].block < 0) continue;
+    a.bodies[b].centre = add_marker(a, static_cast<int>(b), a.bodies[b].start.position);
+    a.mass[static_cast<std::size_t>(a.bodies[b].centre)] = a.bodies[b].mass.mass;
+  }
+  for (const Grip& grip : scene.grips) add_grip(a, scene, grip);
+  choose_stiffness(a);
+  return a;
+}
+}  // namespace tape

@@ -1,0 +1,74 @@
+#pragma once
+#include <vector>
+
+#include "tape/bodies/assembly.hpp"
+#include "tape/core/side.hpp"
+#include "tape/math/rotation.hpp"
+
+namespace tape::TAPE_SIDE {
+/// Positions of all vertices and poses of all bodies on this side: a point in the space of the unknowns.
+struct Configuration {
+  Buffer<Vec3> x;              ///< [nv] m
+  Buffer<Pose> body;           ///< [bodies] X_WB
+  Buffer<Vec3> body_position;  ///< [bodies] m, what PathView needs of them
+  void copy_from(const Configuration& other) {
+    x.copy_from(other.x);
+    body.copy_from(other.body);
+    body_position.copy_from(other.body_position);
+  }
+};
+
+/// What moves the vertices: constant for a run.
+class Coordinates {
+ public:
+  explicit Coordinates(const Assembly& a) : owner_(a.owner), local_(a.local), blocks_(a.blocks) {
+    std::vector<int> first;
+    for (const BodyPart& b : a.bodies) first.push_back(b.block);
+    body_block_.upload(first);
+  }
+  int blocks() const { return blocks_; }
+  Span<const VertexOwner> owner() const { return owner_.span(); }
+  /// to = from moved by `step` times the direction [blocks] m and rad. Fixed things keep what `to` has.
+  void move(const Configuration& from, Span<const Vec3> direction, Real step, Configuration& to) const {
+    parallel_for(from.body.size(),
+                 MoveBody{from.body.span(), direction, body_block_.span(), step, to.body.span(), to.body_position.span()});
+    parallel_for(from.x.size(), MoveVertex{from.x.span(), direction, owner_.span(), local_.span(), to.body.span(), step, to.x.span()});
+  }
+  PathView paths(const Configuration& from, Span<const Vec3> direction) const {
+    return {from.x.span(), owner_.span(), direction, from.body_position.span()};
+  }
+
+ private:
+  struct MoveBody {
+    Span<const Pose> from;
+    Span<const Vec3> direction;
+    Span<const int> block;
+    Real step;
+    Span<Pose> to;
+    Span<Vec3> to_position;
+    TAPE_HD void operator()(int b) const {
+      if (block[b] < 0) return;
+      const Mat3 turn = rotation_exp(step * direction[block[b] + 1]);
+      to[b] = {turn * from[b].rotation, from[b].position + step * direction[block[b]]};
+      to_position[b] = to[b].position;
+    }
+  };
+  struct MoveVertex {
+    Span<const Vec3> from, direction;
+    Span<const VertexOwner> owner;
+    Span<const Vec3> local;
+    Span<const Pose> body;
+    Real step;
+    Span<Vec3> to;
+    TAPE_HD void operator()(int v) const {
+      const VertexOwner o = owner[v];
+      if (o.block < 0) return;
+      to[v] = o.body < 0 ? Vec3(from[v] + step * direction[o.block]) : apply(body[o.body], local[v]);
+    }
+  };
+  Buffer<VertexOwner> owner_;
+  Buffer<Vec3> local_;
+  Buffer<int> body_block_;
+  int blocks_;
+};
+}  // namespace tape::TAPE_SIDE

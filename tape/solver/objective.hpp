@@ -1,0 +1,102 @@
+#pragma once
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "tape/bodies/relocation.hpp"
+#include "tape/core/side.hpp"
+#include "tape/core/stopwatch.hpp"
+#include "tape/effects/effects.hpp"
+#include "tape/solver/block_matrix.hpp"
+#include "tape/solver/vector_gather.hpp"
+
+namespace tape {
+/// A sum of energies and of their magnitudes: the second tells what round-off the first may carry.
+struct EnergySum {
+  Real sum = 0, scale = 0;  ///< [J]
+};
+
+template <class T>
+inline constexpr bool is_contact = requires(const T& t, const ContactPair& p, const StateView& s, typename T::Element& e) {
+  t.lag(p, s, e);
+}
+|| requires { T::contact_pairs; };
+template <class T>
+inline constexpr bool free_vertices = requires {
+  T::free_vertices;
+};
+template <class T>
+inline constexpr bool on_blocks = requires {
+  T::on_blocks;
+};
+}  // namespace tape
+
+namespace tape::TAPE_SIDE {
+/// Where the elements of one effect write: counts before, sizes after the scan.
+struct SlotOffsets {
+  Buffer<int> gradient, hessian;  // [count + 1]
+};
+
+/// One effect as the solver holds it.
+template <class T>
+struct Term {
+  bool on = false;
+  T view;
+  Buffer<typename T::Element> elements;
+  Buffer<int> active;  // ids of the elements that contribute; contact effects only
+  int count = 0;       // elements that contribute
+  SlotOffsets offsets;
+  int gradient_base = 0, hessian_base = 0;
+  Real ms = 0;
+};
+
+/// Gradient and Hessian slots of a group of effects: `fixed` ones keep their pattern for a run, contact ones follow the pairs.
+struct SlotGroupBuffers {
+  Buffer<std::uint64_t> rows, keys;
+  Buffer<Vec3> gradient;
+  Buffer<Mat3> hessian;
+  VectorGather gather;
+};
+
+/// The incremental potential: all effects that are on.
+class Objective {
+ public:
+  /// @param on  by effect, in the order of the list
+  Objective(const Setup& setup, const Assembly& assembly, const std::vector<bool>& on, const StateView& start);
+  /// Pairs of the contact search, for effects that work on them.
+  void set_candidates(Span<const ContactPair> candidates);
+  /// Fixes what lags for a step, at s.x == s.x_start.
+  void begin_step(const StateView& s);
+  EnergySum energy(const StateView& s);
+  /// Gradient and matrix at s.
+  void linearize(const StateView& s, HessianMode mode);
+  Span<const Vec3> gradient() const { return gradient_.span(); }
+  const BlockMatrix& matrix() const { return matrix_; }
+  /// "effect 'name', element i": the first whose energy is not finite; empty if all are.
+  std::string first_non_finite(const StateView& s);
+  /// Calls f(name, term) for each effect that is on.
+  template <class F>
+  void for_each(const F& f) {
+    std::apply([&](auto&... term) { (visit(f, term), ...); }, terms_);
+  }
+
+ private:
+  template <class... T>
+  static std::tuple<Term<T>...> terms_of(std::tuple<T...>*);
+  using Terms = decltype(terms_of(static_cast<Effects*>(nullptr)));
+  template <class F, class T>
+  void visit(const F& f, Term<T>& term) {
+    if (term.on) f(T::name, term);
+  }
+  void set_pattern(const StateView& s, bool contact);
+  void fill(const StateView& s, HessianMode mode, bool contact);
+
+  int blocks_ = 0;
+  Terms terms_;
+  SlotGroupBuffers fixed_, contact_;
+  Buffer<Vec3> gradient_;
+  BlockMatrix matrix_;
+  Span<const ContactPair> candidates_;
+  Buffer<int> scratch_;
+};
+}  // namespace tape::TAPE_SIDE

@@ -1,0 +1,278 @@
+#pragma once
+#include "tape/solver/objective.hpp"
+
+namespace tape::TAPE_SIDE {
+namespace objective {
+/// Elements that contribute: all of an effect, or the active ones.
+struct Selection {
+  Span<const int> ids;  // empty: all
+  TAPE_HD int operator[](int i) const { return ids.size > 0 ? ids[i] : i; }
+};
+
+template <class T>
+struct ElementEnergy {
+  T term;
+  StateView s;
+  TAPE_HD EnergySum operator()(int i) const {
+    const Real e = term.energy(s, i);
+    return {e, std::fabs(e)};
+  }
+};
+struct AddEnergies {
+  TAPE_HD EnergySum operator()(const EnergySum& a, const EnergySum& b) const { return {a.sum + b.sum, a.scale + b.scale}; }
+};
+
+template <class T>
+struct FirstNonFinite {
+  T term;
+  StateView s;
+  int count;
+  TAPE_HD int operator()(int i) const { return std::isfinite(term.energy(s, i)) ? count : i; }
+};
+struct Smaller {
+  TAPE_HD int operator()(int a, int b) const { return a < b ? a : b; }
+};
+
+template <class T>
+struct FlagActive {
+  T term;
+  StateView s;
+  Span<int> flag;  // [count + 1], the last stays 0
+  TAPE_HD void operator()(int i) const { flag[i] = i + 1 < flag.size && term.active(s, i) ? 1 : 0; }
+};
+struct Compact {
+  Span<const int> offset;  // [count + 1] scanned flags
+  Span<int> ids;
+  TAPE_HD void operator()(int i) const {
+    if (offset[i + 1] > offset[i]) ids[offset[i]] = i;
+  }
+};
+
+template <class T>
+struct FlagLagged {
+  T term;
+  StateView s;
+  Span<const ContactPair> pairs;
+  Span<int> flag;  // [pairs + 1]
+  TAPE_HD void operator()(int i) const {
+    typename T::Element e;
+    flag[i] = i < pairs.size && term.lag(pairs[i], s, e) ? 1 : 0;
+  }
+};
+template <class T>
+struct MakeLagged {
+  T term;
+  StateView s;
+  Span<const ContactPair> pairs;
+  Span<const int> offset;  // [pairs + 1]
+  Span<typename T::Element> elements;
+  TAPE_HD void operator()(int i) const {
+    if (offset[i + 1] > offset[i]) term.lag(pairs[i], s, elements[offset[i]]);
+  }
+};
+
+/// Blocks of element i: relocated vertices, or the stencil itself where it names blocks or free vertices.
+template <class T>
+TAPE_HD auto blocks_of(const T& term, const StateView& s, int i) {
+  if constexpr (on_blocks<T> || free_vertices<T>) {
+    DirectBlocks<stencil_size<T>> r;
+    const auto stencil = term.stencil(i);
+    for (int a = 0; a < stencil_size<T>; ++a) r.block[a] = on_blocks<T> ? stencil.id[a] : s.owner[stencil.id[a]].block;
+    return r;
+  } else {
+    return relocate(term.stencil(i), s);
+  }
+}
+
+template <class T>
+struct CountBlocks {
+  T term;
+  StateView s;
+  Selection select;
+  int count;
+  Span<int> gradient, hessian;  // [count + 1]
+  TAPE_HD void operator()(int i) const {
+    const int m = i < count ? blocks_of(term, s, select[i]).blocks : 0;
+    gradient[i] = m;
+    hessian[i] = m * (m + 1) / 2;
+  }
+};
+
+template <class T>
+struct EmitKeys {
+  T term;
+  StateView s;
+  Selection select;
+  Span<const int> gradient, hessian;
+  int gradient_base, hessian_base;
+  Span<std::uint64_t> rows, keys;
+  TAPE_HD void operator()(int i) const {
+    const auto r = blocks_of(term, s, select[i]);
+    for (int a = 0; a < r.blocks; ++a) {
+      rows[gradient_base + gradient[i] + a] = static_cast<std::uint64_t>(r.block[a]);
+      for (int b = a; b < r.blocks; ++b) {
+        const bool upper = r.block[a] <= r.block[b];
+        keys[hessian_base + hessian[i] + pair_slot(a, b, r.blocks)] =
+            block_key(upper ? r.block[a] : r.block[b], upper ? r.block[b] : r.block[a]);
+      }
+    }
+  }
+};
+
+template <class T>
+struct FillSlots {
+  T term;
+  StateView s;
+  Selection select;
+  HessianMode mode;
+  Span<const int> gradient, hessian;
+  int gradient_base, hessian_base;
+  Span<Vec3> gradient_out;
+  Span<Mat3> hessian_out;
+  TAPE_HD void operator()(int i) const {
+    const int e = select[i];
+    const auto r = blocks_of(term, s, e);
+    const VecN<3 * stencil_size<T>> g = term.gradient(s, e);
+    const MatN<3 * stencil_size<T>, 3 * stencil_size<T>> H = term.hessian(s, e, mode);
+    Mat3* out = hessian_out.data + hessian_base + hessian[i];
+    relocate_gradient(r, g, gradient_out.data + gradient_base + gradient[i]);
+    relocate_hessian(r, g, H, mode == HessianMode::exact, out);
+    for (int a = 0; a < r.blocks; ++a)  // the matrix stores its upper triangle
+      for (int b = a + 1; b < r.blocks; ++b)
+        if (r.block[a] > r.block[b]) out[pair_slot(a, b, r.blocks)].transposeInPlace();
+  }
+};
+}  // namespace objective
+
+inline Objective::Objective(const Setup& setup, const Assembly& assembly, const std::vector<bool>& on, const StateView& start)
+    : blocks_(assembly.blocks) {
+  std::size_t k = 0;
+  const auto build = [&]<class T>(Term<T>& term) {
+    term.on = on[k++];
+    if (!term.on) return;
+    std::vector<typename T::Element> elements;
+    term.view = T::build(setup.scene, assembly, params<T>(setup.effects), elements);
+    term.elements.upload(elements);
+    term.view.elements = term.elements.span();
+    term.count = term.elements.size();
+  };
+  std::apply([&](auto&... term) { (build(term), ...); }, terms_);
+  gradient_.resize(blocks_);
+  set_pattern(start, false);
+  matrix_.set_fixed_pattern(blocks_, fixed_.keys.span());
+}
+
+inline void Objective::set_candidates(Span<const ContactPair> candidates) {
+  candidates_ = candidates;
+  for_each([&]<class T>(std::string_view, Term<T>& term) {
+    if constexpr (requires { T::contact_pairs; }) term.view.elements = candidates;
+  });
+}
+
+inline void Objective::begin_step(const StateView& s) {
+  for_each([&]<class T>(std::string_view, Term<T>& term) {
+    if constexpr (requires(typename T::Element & e) { term.view.lag(candidates_[0], s, e); }) {
+      const Stopwatch watch(term.ms);
+      scratch_.resize(candidates_.size + 1);
+      parallel_for(candidates_.size + 1, objective::FlagLagged<T>{term.view, s, candidates_, scratch_.span()});
+      term.elements.resize(exclusive_scan(scratch_.span()));
+      term.view.elements = term.elements.span();
+      parallel_for(candidates_.size, objective::MakeLagged<T>{term.view, s, candidates_, scratch_.span(), term.elements.span()});
+    }
+  });
+}
+
+inline EnergySum Objective::energy(const StateView& s) {
+  EnergySum total;
+  for_each([&]<class T>(std::string_view, Term<T>& term) {
+    const Stopwatch watch(term.ms);
+    const EnergySum e = reduce(term.view.elements.size, EnergySum{}, objective::ElementEnergy<T>{term.view, s}, objective::AddEnergies{});
+    total = {total.sum + e.sum, total.scale + e.scale};
+  });
+  return total;
+}
+
+inline std::string Objective::first_non_finite(const StateView& s) {
+  std::string where;
+  for_each([&]<class T>(std::string_view name, Term<T>& term) {
+    const int n = term.view.elements.size;
+    const int i = where.empty() ? reduce(n, n, objective::FirstNonFinite<T>{term.view, s, n}, objective::Smaller{}) : n;
+    if (i < n) where = "effect '" + std::string(name) + "', element " + std::to_string(i);
+  });
+  return where;
+}
+
+/// Finds the contributing elements of a group and gives each its slots.
+inline void Objective::set_pattern(const StateView& s, bool contact) {
+  SlotGroupBuffers& group = contact ? contact_ : fixed_;
+  int gradient_slots = 0, hessian_slots = 0;
+  for_each([&]<class T>(std::string_view, Term<T>& term) {
+    if (is_contact<T> != contact) return;
+    const Stopwatch watch(term.ms);
+    const int n = term.view.elements.size;
+    term.count = n;
+    if constexpr (is_contact<T> && requires { term.view.active(s, 0); }) {
+      scratch_.resize(n + 1);
+      parallel_for(n + 1, objective::FlagActive<T>{term.view, s, scratch_.span()});
+      term.count = exclusive_scan(scratch_.span());
+      term.active.resize(term.count);
+      parallel_for(n, objective::Compact{scratch_.span(), term.active.span()});
+    }
+    term.offsets.gradient.resize(term.count + 1);
+    term.offsets.hessian.resize(term.count + 1);
+    parallel_for(term.count + 1,
+                 objective::CountBlocks<T>{
+                     term.view, s, {term.active.span()}, term.count, term.offsets.gradient.span(), term.offsets.hessian.span()});
+    term.gradient_base = gradient_slots;
+    term.hessian_base = hessian_slots;
+    gradient_slots += exclusive_scan(term.offsets.gradient.span());
+    hessian_slots += exclusive_scan(term.offsets.hessian.span());
+  });
+  group.rows.resize(gradient_slots);
+  group.keys.resize(hessian_slots);
+  group.gradient.resize(gradient_slots);
+  group.hessian.resize(hessian_slots);
+  for_each([&]<class T>(std::string_view, Term<T>& term) {
+    if (is_contact<T> != contact) return;
+    const Stopwatch watch(term.ms);
+    parallel_for(term.count, objective::EmitKeys<T>{term.view,
+                                                    s,
+                                                    {term.active.span()},
+                                                    term.offsets.gradient.span(),
+                                                    term.offsets.hessian.span(),
+                                                    term.gradient_base,
+                                                    term.hessian_base,
+                                                    group.rows.span(),
+                                                    group.keys.span()});
+  });
+  group.gather.set_rows(blocks_, group.rows);
+}
+
+inline void Objective::fill(const StateView& s, HessianMode mode, bool contact) {
+  SlotGroupBuffers& group = contact ? contact_ : fixed_;
+  for_each([&]<class T>(std::string_view, Term<T>& term) {
+    if (is_contact<T> != contact) return;
+    const Stopwatch watch(term.ms);
+    parallel_for(term.count, objective::FillSlots<T>{term.view,
+                                                     s,
+                                                     {term.active.span()},
+                                                     mode,
+                                                     term.offsets.gradient.span(),
+                                                     term.offsets.hessian.span(),
+                                                     term.gradient_base,
+                                                     term.hessian_base,
+                                                     group.gradient.span(),
+                                                     group.hessian.span()});
+  });
+  group.gather.gather(group.gradient.span(), contact, gradient_.span());
+}
+
+inline void Objective::linearize(const StateView& s, HessianMode mode) {
+  set_pattern(s, true);
+  fill(s, mode, false);
+  fill(s, mode, true);
+  matrix_.accumulate_fixed(fixed_.hessian.span());
+  matrix_.set_contact_pattern(contact_.keys.span());
+  matrix_.accumulate_contact(contact_.hessian.span());
+}
+}  // namespace tape::TAPE_SIDE

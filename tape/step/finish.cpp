@@ -1,0 +1,75 @@
+#include "tape/step/finish.hpp"
+
+#include <Eigen/LU>
+
+#include "tape/bodies/free_flight.hpp"
+#include "tape/math/rotation.hpp"
+
+namespace tape {
+namespace {
+/// Nearest rotation: products of rotations drift off by round-off.
+Mat3 orthonormal(const Mat3& R) { return Eigen::Quaternion<Real>(R).normalized().toRotationMatrix(); }
+
+void add_grip_forces(const World& world, const State& after, Real dt, StepReport& report) {
+  State at = after;
+  at.time -= dt;
+  const Drive drive = Drive::at(world, at, dt);
+  const std::vector<Vec3> x = vertex_positions(world, after);
+  std::size_t spring = 0;
+  for (const Assembly::GripPart& grip : world.assembly.grips) {
+    Vec3 force = Vec3::Zero();
+    for (std::size_t k = 0; k < grip.vertices.size(); ++k, ++spring) {
+      const int anchor = grip.anchors[k];
+      const Vec3 target = anchor < 0 ? drive.grip_target[spring] : x[static_cast<std::size_t>(anchor)];
+      force += drive.grip_stiffness[spring] * (target - x[static_cast<std::size_t>(grip.vertices[k])]);
+    }
+    report.grip_force.push_back(force);
+  }
+}
+}  // namespace
+
+void finish_body(const BodyMass& mass, const Pose& pose, const Pose& target, Real dt, BodyState& body) {
+  body.velocity = (pose.position - body.pose.position) / dt;
+  if (mass.mass > 0) body.angular_momentum += axial(pose.rotation * mass.second * target.rotation.transpose()) / dt;
+  body.pose = {orthonormal(pose.rotation), pose.position};
+}
+
+void finish_step(const World& world, const State& before, const State& after, Real dt, StepReport& report) {
+  const Assembly& a = world.assembly;
+  report.kinetic = 0;
+  for (std::size_t v = 0; v < after.x.size(); ++v) {
+    report.kinetic += a.mass[v] * after.v[v].squaredNorm() / 2;
+    report.momentum += a.mass[v] * after.v[v];
+    report.angular_momentum += a.mass[v] * after.x[v].cross(after.v[v]);
+  }
+  for (std::size_t b = 0; b < after.bodies.size(); ++b) {
+    const BodyState& body = after.bodies[b];
+    const BodyMass& mass = a.bodies[b].mass;
+    report.body_force.push_back(mass.mass * ((body.velocity - before.bodies[b].velocity) / dt - world.setup.scene.gravity));
+    if (!(mass.mass > 0)) continue;
+    const Mat3 inertia = body.pose.rotation * inertia_tensor(mass.second) * body.pose.rotation.transpose();
+    report.kinetic +=
+        mass.mass * body.velocity.squaredNorm() / 2 + body.angular_momentum.dot(inertia.inverse() * body.angular_momentum) / 2;
+    report.momentum += mass.mass * body.velocity;
+    report.angular_momentum += mass.mass * body.pose.position.cross(body.velocity) + body.angular_momentum;
+  }
+  add_grip_forces(world, after, dt, report);
+}
+
+std::vector<Real> vertex_contact_force(const World& world, const std::vector<ContactPair>& pairs, const std::vector<Vec3>& x) {
+  std::vector<typename Barrier::Element> none;
+  Barrier barrier = Barrier::build(world.setup.scene, world.assembly, params<Barrier>(world.setup.effects), none);
+  barrier.elements = {pairs.data(), static_cast<int>(pairs.size())};
+  StateView s{};
+  s.x = {x.data(), static_cast<int>(x.size())};
+  std::vector<Vec3> force(x.size(), Vec3::Zero());
+  for (int i = 0; i < barrier.elements.size; ++i) {
+    if (!barrier.active(s, i)) continue;
+    const VecN<12> g = barrier.gradient(s, i);
+    for (int k = 0; k < 4; ++k) force[static_cast<std::size_t>(pairs[static_cast<std::size_t>(i)].v[k])] -= g.segment<3>(3 * k);
+  }
+  std::vector<Real> magnitude;
+  for (const Vec3& f : force) magnitude.push_back(f.norm());
+  return magnitude;
+}
+}  // namespace tape

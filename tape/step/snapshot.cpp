@@ -1,0 +1,145 @@
+#include <hdf5.h>
+
+#include <cstring>
+#include <filesystem>
+#include <memory>
+
+#include "tape/step/world.hpp"
+
+namespace tape {
+namespace {
+/// Closes an HDF5 handle of any kind.
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  ~Handle() {
+    if (id_ >= 0) close_(id_);
+  }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  operator hid_t() const { return id_; }
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+/// HDF5 prints its own stack of errors otherwise; ours name the file.
+void silence_hdf5() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+constexpr const char* kReals = "reals";
+constexpr const char* kIntegers = "integers";
+constexpr const char* kHash = "state_hash";
+constexpr const char* kWorld = "world_hash";
+
+/// The state as two flat arrays, in a fixed order.
+struct Flat {
+  std::vector<Real> reals;
+  std::vector<std::int64_t> integers;
+};
+
+template <class Visit>
+void visit_state(State& s, const Visit& visit) {
+  visit(s.time);
+  for (Vec3& p : s.x) visit(p);
+  for (Vec3& p : s.v) visit(p);
+  for (BodyState& b : s.bodies) visit(b.pose.rotation), visit(b.pose.position), visit(b.velocity), visit(b.angular_momentum);
+  for (Vec3& p : s.grip_base) visit(p);
+  visit(s.step);
+  for (int& c : s.grip_closed) visit(c);
+}
+
+struct Write {
+  Flat& flat;
+  void operator()(Real& v) const { flat.reals.push_back(v); }
+  void operator()(int& v) const { flat.integers.push_back(v); }
+  template <class M>
+  void operator()(M& m) const {
+    flat.reals.insert(flat.reals.end(), m.data(), m.data() + m.size());
+  }
+};
+struct Read {
+  const Flat& flat;
+  mutable std::size_t real = 0, integer = 0;
+  void operator()(Real& v) const { v = flat.reals.at(real++); }
+  void operator()(int& v) const { v = static_cast<int>(flat.integers.at(integer++)); }
+  template <class M>
+  void operator()(M& m) const {
+    for (Eigen::Index i = 0; i < m.size(); ++i) m.data()[i] = flat.reals.at(real++);
+  }
+};
+
+/// Of what a state must fit: vertices, triangles, rest shape and owners.
+std::string world_hash(const World& world) {
+  State digest;
+  for (const Index3& t : world.assembly.triangles) digest.x.push_back(t.cast<Real>());
+  for (const Vec2& r : world.assembly.rest) digest.x.push_back({r.x(), r.y(), 0});
+  for (const VertexOwner& o : world.assembly.owner) digest.x.push_back({static_cast<Real>(o.block), static_cast<Real>(o.body), 0});
+  return digest.hash();
+}
+
+void write_array(hid_t file, const char* name, hid_t type, const void* data, std::size_t n) {
+  const hsize_t size = n;
+  const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
+  const Handle set(H5Dcreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+  if (set < 0 || H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) throw InputError(std::string("cannot write '") + name + "'");
+}
+
+template <class T>
+std::vector<T> read_array(hid_t file, const char* name, hid_t type) {
+  const Handle set(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
+  if (set < 0) throw InputError(std::string("'") + name + "' is missing");
+  const Handle space(H5Dget_space(set), H5Sclose);
+  std::vector<T> values(static_cast<std::size_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space))));
+  if (H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) throw InputError(std::string("cannot read '") + name + "'");
+  return values;
+}
+
+void write_file(const std::string& name, const World& world, const State& state, const Flat& flat) {
+  const Handle file(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+  if (file < 0) throw InputError("cannot create it");
+  const std::string hash = state.hash(), world_id = world_hash(world);
+  write_array(file, kReals, H5T_NATIVE_DOUBLE, flat.reals.data(), flat.reals.size());
+  write_array(file, kIntegers, H5T_NATIVE_INT64, flat.integers.data(), flat.integers.size());
+  write_array(file, kHash, H5T_NATIVE_CHAR, hash.data(), hash.size());
+  write_array(file, kWorld, H5T_NATIVE_CHAR, world_id.data(), world_id.size());
+  if (H5Fflush(file, H5F_SCOPE_GLOBAL) < 0) throw InputError("cannot write it out");
+}
+
+std::string as_text(const std::vector<char>& c) { return {c.begin(), c.end()}; }
+}  // namespace
+
+void save_snapshot(const std::string& file, const World& world, const State& state) {
+  silence_hdf5();
+  State copy = state;
+  Flat flat;
+  visit_state(copy, Write{flat});
+  const std::string temporary = file + ".tmp";
+  try {
+    write_file(temporary, world, state, flat);
+    std::filesystem::rename(temporary, file);
+  } catch (const std::exception& e) {
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    throw InputError(file + ": cannot write the snapshot: " + e.what());
+  }
+}
+
+State load_snapshot(const std::string& file, const World& world) {
+  silence_hdf5();
+  const auto refuse = [&](const std::string& why) { throw InputError(file + ": not a snapshot of this scene: " + why); };
+  if (!std::filesystem::exists(file)) throw InputError(file + ": no such file");
+  const Handle h5(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (h5 < 0) throw InputError(file + ": not a snapshot, or truncated");
+  State state = State::start(world);
+  try {
+    if (as_text(read_array<char>(h5, kWorld, H5T_NATIVE_CHAR)) != world_hash(world)) refuse("its strips and bodies differ");
+    const Flat flat{read_array<Real>(h5, kReals, H5T_NATIVE_DOUBLE), read_array<std::int64_t>(h5, kIntegers, H5T_NATIVE_INT64)};
+    visit_state(state, Read{flat});
+    if (as_text(read_array<char>(h5, kHash, H5T_NATIVE_CHAR)) != state.hash()) refuse("its contents do not match their hash");
+  } catch (const std::out_of_range&) {
+    refuse("its arrays are too short");
+  }
+  return state;
+}
+}  // namespace tape

@@ -1,0 +1,362 @@
+#pragma once
+#include <cmath>
+
+#include "tape/bodies/configuration.hpp"
+#include "tape/bodies/free_flight.hpp"
+#include "tape/contact/search.hpp"
+#include "tape/solver/linear_solver.hpp"
+#include "tape/solver/objective.inl"
+#include "tape/step/finish.hpp"
+#include "tape/step/stepper.hpp"
+
+namespace tape::TAPE_SIDE {
+namespace stepping {
+struct Negate {
+  Span<const Vec3> in;
+  Span<Vec3> out;
+  TAPE_HD void operator()(int i) const { out[i] = -in[i]; }
+};
+struct Dot {
+  Span<const Vec3> a, b;
+  TAPE_HD Real operator()(int i) const { return a[i].dot(b[i]); }
+};
+struct Plus {
+  TAPE_HD Real operator()(Real a, Real b) const { return a + b; }
+};
+struct Larger {
+  TAPE_HD Real operator()(Real a, Real b) const { return a > b ? a : b; }
+};
+struct SmallerReal {
+  TAPE_HD Real operator()(Real a, Real b) const { return a < b ? a : b; }
+};
+/// Largest component [m] of the move of a vertex over a whole path.
+struct Travel {
+  PathView paths;
+  TAPE_HD Real operator()(int v) const { return (paths[v].at(1) - paths.x[v]).cwiseAbs().maxCoeff(); }
+};
+/// Bound [m] on the length of the way of a vertex.
+struct Way {
+  PathView paths;
+  TAPE_HD Real operator()(int v) const {
+    const VertexPath p = paths[v];
+    return p.velocity.norm() + p.spin.norm() * p.arm.norm();
+  }
+};
+struct Scale {
+  Span<Vec3> out;
+  Real factor;
+  TAPE_HD void operator()(int i) const { out[i] *= factor; }
+};
+struct Gap {
+  Span<const ContactPair> pairs;
+  Span<const Vec3> x;
+  TAPE_HD Real operator()(int i) const {
+    const ContactPair& p = pairs[i];
+    const Vec3 at[4] = {x[p.v[0]], x[p.v[1]], x[p.v[2]], x[p.v[3]]};
+    return combine(closest(p.kind, at).weight, at).norm() - p.xi;
+  }
+};
+}  // namespace stepping
+
+/// One step of the solver on one side.
+class SideStepper final : public Stepper {
+ public:
+  explicit SideStepper(const World& world)
+      : world_(world),
+        coordinates_(world.assembly),
+        search_(world.surface, world.setup.scene.dhat()),
+        linear_(world.setup.linear, layout(world.assembly)) {
+    const State state = State::start(world);
+    std::vector<Real> mu;
+    const int materials = world.surface.materials;
+    for (int k = 0; k < materials * materials; ++k) mu.push_back(world.setup.scene.mu(k / materials, k % materials));
+    mu_.upload(mu);
+    for (Real m : world.assembly.mass) moving_mass_ += m;
+    contact_on_ = is_on("barrier");
+    begin(state, world.setup.scene.time.dt);
+    std::vector<bool> on;
+    for (const PlanLine& line : world.plan) on.push_back(line.on);
+    objective_.emplace(world.setup, world.assembly, on, view(now_));
+    direction_.resize(coordinates_.blocks());
+    right_.resize(coordinates_.blocks());
+  }
+
+  StepReport step(State& state) override {
+    StepReport report;
+    const Real dt = world_.setup.scene.time.dt;
+    report.dt = dt;
+    reset_times();
+    {
+      const Stopwatch watch(report.wall_ms);
+      State next = state;
+      const Real end = (state.step + 1) * dt;
+      report.ok = advance(next, dt, world_.setup.newton.retries, report);
+      if (report.ok) {
+        next.time = end;
+        ++next.step;
+        finish_step(world_, state, next, dt, report);
+        state = std::move(next);
+      }
+    }
+    collect(report);
+    return report;
+  }
+
+  std::vector<Real> contact_force() const override {
+    return vertex_contact_force(world_, pairs_on_host(search_.candidates()), now_.x.download());
+  }
+
+ private:
+  static SystemLayout layout(const Assembly& a) {
+    SystemLayout layout;
+    for (const StripPart& s : a.strips)
+      layout.strips.push_back({a.owner[static_cast<std::size_t>(s.first_vertex)].block, s.vertices, s.columns});
+    for (const BodyPart& b : a.bodies)
+      if (b.block >= 0) layout.body_blocks.push_back(b.block);
+    return layout;
+  }
+  bool is_on(std::string_view name) const {
+    for (const PlanLine& line : world_.plan)
+      if (line.name == name) return line.on;
+    return false;
+  }
+
+  /// Brings the state to this side and finds what is prescribed for its end.
+  void begin(const State& state, Real dt) {
+    const Drive drive = Drive::at(world_, state, dt);
+    const std::vector<Vec3> x = vertex_positions(world_, state);
+    std::vector<Vec3> x_tilde = x, centre;
+    for (std::size_t v = 0; v < state.x.size(); ++v) x_tilde[v] = state.x[v] + dt * state.v[v];
+    std::vector<Pose> pose;
+    for (const BodyState& b : state.bodies) pose.push_back(b.pose), centre.push_back(b.pose.position);
+    dt_ = dt;
+    start_.x.upload(x);
+    start_.body.upload(pose);
+    start_.body_position.upload(centre);
+    x_tilde_.upload(x_tilde);
+    body_target_.upload(drive.body_target);
+    grip_target_.upload(drive.grip_target);
+    grip_stiffness_.upload(drive.grip_stiffness);
+    now_.copy_from(start_);
+    trial_.copy_from(start_);
+  }
+
+  StateView view(const Configuration& at) const {
+    return {.dt = dt_,
+            .x = at.x.span(),
+            .x_start = start_.x.span(),
+            .x_tilde = x_tilde_.span(),
+            .owner = coordinates_.owner(),
+            .body = at.body.span(),
+            .body_target = body_target_.span(),
+            .grip_target = grip_target_.span(),
+            .grip_stiffness = grip_stiffness_.span(),
+            .mu = mu_.span()};
+  }
+
+  /// One step of dt; on failure two of dt/2, and so on `retries` times. `state` is changed on success only.
+  bool advance(State& state, Real dt, int retries, StepReport& report) {
+    State next = state;
+    close_grips(world_, next);
+    begin(next, dt);
+    if (newton(report)) {
+      read_back(next, dt);
+      state = std::move(next);
+      return true;
+    }
+    if (retries == 0) return false;
+    ++report.substeps;
+    next = state;
+    if (!advance(next, dt / 2, retries - 1, report) || !advance(next, dt / 2, retries - 1, report)) return false;
+    report.failure.clear();
+    state = std::move(next);
+    return true;
+  }
+
+  void read_back(State& state, Real dt) const {
+    const std::vector<Vec3> x = now_.x.download();
+    for (std::size_t v = 0; v < state.x.size(); ++v) {
+      state.v[v] = (x[v] - state.x[v]) / dt;
+      state.x[v] = x[v];
+    }
+    const std::vector<Pose> pose = now_.body.download(), target = body_target_.download();
+    for (std::size_t b = 0; b < state.bodies.size(); ++b)
+      if (world_.assembly.bodies[b].motion != Motion::fixed)
+        finish_body(world_.assembly.bodies[b].mass, pose[b], target[b], dt, state.bodies[b]);
+    state.time += dt;
+  }
+
+  /// Makes the candidates hold along a direction from now_.
+  void update_candidates(Span<const Vec3> direction) {
+    if (!contact_on_) return;
+    const Stopwatch watch(search_ms_);
+    const Real margin = world_.setup.scene.contact.margin * world_.setup.scene.dhat();
+    if (search_.update(coordinates_.paths(now_, direction), margin)) ++searches_;
+    objective_->set_candidates(search_.candidates());
+  }
+
+  /// Newton's method from now_ == start_ to the end of the step.
+  bool newton(StepReport& report) {
+    const NewtonParams& params = world_.setup.newton;
+    parallel_for(direction_.size(), Fill{direction_.span()});
+    update_candidates(direction_.span());
+    objective_->begin_step(view(now_));
+    Real previous = 0;
+    for (int k = 0; k < params.max_newton; ++k) {
+      ++report.newton;
+      if (!find_direction(report)) return false;
+      const Real slope = -reduce(direction_.size(), 0.0, stepping::Dot{right_.span(), direction_.span()}, stepping::Plus{});
+      const Real moved = reduce(now_.x.size(), 0.0, stepping::Travel{coordinates_.paths(now_, direction_.span())}, stepping::Larger{});
+      if (!std::isfinite(moved) || !std::isfinite(slope)) return fail(report, "the Newton direction is not finite");
+      const Real rho = k > 0 && previous > 0 ? std::fmin(moved / previous, 0.99) : 0;
+      report.last_update = moved;
+      report.stop_error_estimate = k > 0 ? moved * rho / (1 - rho) : moved;
+      const bool converged = stops(moved, slope, rho);
+      previous = moved;
+      bool at_round_off = false;
+      if (!line_search(slope, report, at_round_off)) return false;
+      if (converged || at_round_off) return true;
+    }
+    return fail(report, "Newton's method took " + std::to_string(params.max_newton) + " iterations (solver.max_newton)");
+  }
+
+  bool stops(Real moved, Real slope, Real rho) const {
+    const NewtonParams& params = world_.setup.newton;
+    if (params.stop == StopRule::velocity) return moved < params.velocity_tol * dt_;
+    const Real lost = params.hessian == HessianMode::projected ? (1 - rho) * (1 - rho) : 1;
+    return -slope / lost <= moving_mass_ * params.velocity_tol * params.velocity_tol;
+  }
+
+  /// direction_ = -H^-1 g, right_ = -g.
+  bool find_direction(StepReport& report) {
+    HessianMode mode = world_.setup.newton.hessian;
+    for (;;) {
+      {
+        const Stopwatch watch(assembly_ms_);
+        objective_->linearize(view(now_), mode);
+        parallel_for(right_.size(), stepping::Negate{objective_->gradient(), right_.span()});
+      }
+      const Stopwatch watch(linear_ms_);
+      const LinearReport solved = linear_.solve(objective_->matrix(), right_.span(), direction_.span());
+      report.linear_solver = solved.solver;
+      report.linear_iterations += solved.iterations;
+      if (!solved.negative_curvature) {
+        report.linear_failures += solved.converged ? 0 : 1;
+        return true;
+      }
+      if (mode == HessianMode::projected) {
+        const std::string where = objective_->first_non_finite(view(now_));
+        return fail(report, where.empty() ? "the projected Hessian is not positive definite" : "not finite: " + where);
+      }
+      mode = HessianMode::projected;
+      ++report.hessian_fallbacks;
+    }
+  }
+
+  /// Moves now_ along direction_: limited by CCD for each connected component, then halved until the energy falls.
+  bool line_search(Real slope, StepReport& report, bool& at_round_off) {
+    if (contact_on_) {
+      const Real way = reduce(now_.x.size(), 0.0, stepping::Way{coordinates_.paths(now_, direction_.span())}, stepping::Larger{});
+      if (const Real longest = world_.setup.scene.contact.max_move; way > longest)
+        parallel_for(direction_.size(), stepping::Scale{direction_.span(), longest / way});
+      update_candidates(direction_.span());
+      const Stopwatch watch(ccd_ms_);
+      search_.limit_steps(coordinates_.paths(now_, direction_.span()), {.eta = world_.setup.scene.contact.ccd_gap});
+      search_.scale(direction_.span());
+    }
+    const Stopwatch watch(line_search_ms_);
+    const EnergySum before = objective_->energy(view(now_));
+    const Real round_off = 4e-15 * before.scale;
+    at_round_off = -slope <= round_off;
+    Real step = 1;
+    for (int h = 0; h <= world_.setup.newton.max_line_search; ++h, step /= 2) {
+      coordinates_.move(now_, direction_.span(), step, trial_);
+      const EnergySum after = objective_->energy(view(trial_));
+      if (after.sum < before.sum || (-slope * step <= round_off && after.sum <= before.sum + round_off)) {
+        std::swap(now_, trial_);
+        return true;
+      }
+      ++report.halvings;
+    }
+    const std::string where = objective_->first_non_finite(view(now_));
+    return fail(report, where.empty() ? "the line search found no lower energy" : "not finite: " + where);
+  }
+
+  static bool fail(StepReport& report, const std::string& why) {
+    report.failure = why;
+    return false;
+  }
+
+  void reset_times() {
+    search_ms_ = assembly_ms_ = linear_ms_ = ccd_ms_ = line_search_ms_ = 0;
+    searches_ = 0;
+    capped_before_ = search_.report().capped;
+    objective_->for_each([](std::string_view, auto& term) { term.ms = 0; });
+  }
+
+  /// What only this side knows of the step that ended at now_.
+  void collect(StepReport& report) {
+    const StateView s = view(now_);
+    report.searches = searches_;
+    report.ccd_capped = static_cast<int>(search_.report().capped - capped_before_);
+    objective_->for_each([&]<class T>(std::string_view name, Term<T>& term) {
+      EffectReport line{.name = std::string(name), .ms = term.ms, .energy = 0, .elements = term.count};
+      const bool stored = !requires { T::incremental; };
+      if (stored)
+        line.energy = reduce(term.view.elements.size, EnergySum{}, objective::ElementEnergy<T>{term.view, s}, objective::AddEnergies{}).sum;
+      if constexpr (requires { T::contact_pairs; }) {
+        const Span<const ContactPair> pairs = search_.candidates();
+        report.candidates = pairs.size;
+        report.active_pairs = term.count;
+        report.min_gap = reduce(pairs.size, report.min_gap, stepping::Gap{pairs, s.x}, stepping::SmallerReal{});
+      }
+      if constexpr (requires { term.view.strain(s, 0); })
+        report.max_strain = reduce(term.view.elements.size, 0.0, Strain<T>{term.view, s}, stepping::Larger{});
+      report.effects.push_back(line);
+    });
+    report.stages = {{"broad_phase", search_ms_},
+                     {"ccd", ccd_ms_},
+                     {"assembly", assembly_ms_},
+                     {"linear_solver", linear_ms_},
+                     {"line_search", line_search_ms_}};
+  }
+
+  static std::vector<ContactPair> pairs_on_host(Span<const ContactPair> pairs) {
+    Buffer<ContactPair> copy;
+    copy.resize(pairs.size);
+    parallel_for(pairs.size, Copy{pairs, copy.span()});
+    return copy.download();
+  }
+
+  struct Copy {
+    Span<const ContactPair> from;
+    Span<ContactPair> to;
+    TAPE_HD void operator()(int i) const { to[i] = from[i]; }
+  };
+  template <class T>
+  struct Strain {
+    T term;
+    StateView s;
+    TAPE_HD Real operator()(int i) const { return term.strain(s, i); }
+  };
+  struct Fill {
+    Span<Vec3> out;
+    TAPE_HD void operator()(int i) const { out[i].setZero(); }
+  };
+
+  const World& world_;
+  Coordinates coordinates_;
+  ContactSearch search_;
+  LinearSolver linear_;
+  std::optional<Objective> objective_;
+  Configuration start_, now_, trial_;
+  Buffer<Vec3> x_tilde_, grip_target_, direction_, right_;
+  Buffer<Pose> body_target_;
+  Buffer<Real> grip_stiffness_, mu_;
+  Real dt_ = 0, moving_mass_ = 0;
+  bool contact_on_ = false;
+  Real search_ms_ = 0, assembly_ms_ = 0, linear_ms_ = 0, ccd_ms_ = 0, line_search_ms_ = 0;
+  int searches_ = 0;
+  long long capped_before_ = 0;
+};
+}  // namespace tape::TAPE_SIDE

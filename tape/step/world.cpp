@@ -1,0 +1,140 @@
+#include "tape/step/world.hpp"
+
+#include <cstring>
+
+#include "tape/bodies/free_flight.hpp"
+#include "tape/contact/intersection.hpp"
+#include "tape/math/rotation.hpp"
+#include "tape/model/motion.hpp"
+
+namespace tape {
+SurfaceMesh make_surface(const Scene& scene, const Assembly& a);  // surface_mesh.cpp
+
+namespace {
+std::vector<PlanLine> make_plan(const Setup& setup) {
+  std::vector<PlanLine> plan;
+  for_each_effect([&]<class T>(std::type_identity<T>) {
+    PlanLine line{.name = std::string(T::name), .on = false, .why = T::needed(setup.scene, params<T>(setup.effects))};
+    line.on = !line.why.empty();
+    if (!line.on) line.why = "nothing in the scene asks for it";
+    if (const auto forced = setup.forced.find(line.name); forced != setup.forced.end()) {
+      line.on = forced->second;
+      line.why = "effects." + line.name;
+    }
+    plan.push_back(line);
+  });
+  for (const auto& [name, on] : setup.forced) {
+    bool known = false;
+    for (const PlanLine& line : plan) known |= line.name == name;
+    if (!known) throw InputError("effects." + name + ": there is no effect of this name");
+  }
+  return plan;
+}
+}  // namespace
+
+World World::build(Setup setup) {
+  World world;
+  for_each_effect([&]<class T>(std::type_identity<T>) { require_valid(params<T>(setup.effects), std::string(T::name)); });
+  require_valid(setup.scene.time, "time");
+  require_valid(setup.scene.contact, "contact");
+  require_valid(setup.newton, "solver");
+  require_valid(setup.linear, "solver");
+  world.plan = make_plan(setup);
+  world.assembly = assemble(setup.scene);
+  world.surface = make_surface(setup.scene, world.assembly);
+  world.setup = std::move(setup);
+  check_start(world.assembly.x, world.surface, world.setup.scene.dhat());
+  return world;
+}
+
+State State::start(const World& world) {
+  State state;
+  for (const StripPart& strip : world.assembly.strips) {
+    const auto first = strip.first_vertex, last = strip.first_vertex + strip.vertices;
+    state.x.insert(state.x.end(), world.assembly.x.begin() + first, world.assembly.x.begin() + last);
+    state.v.insert(state.v.end(), world.assembly.v.begin() + first, world.assembly.v.begin() + last);
+  }
+  for (const BodyPart& body : world.assembly.bodies) {
+    const Mat3& R = body.start.rotation;
+    state.bodies.push_back({body.start, body.velocity, R * inertia_tensor(body.mass.second) * R.transpose() * body.angular_velocity});
+  }
+  for (const Assembly::GripPart& grip : world.assembly.grips) {
+    for (int v : grip.vertices) state.grip_base.push_back(world.assembly.x[static_cast<std::size_t>(v)]);
+    state.grip_closed.push_back(0);
+  }
+  return state;
+}
+
+std::string State::hash() const {
+  std::uint64_t h = 0xcbf29ce484222325;  // FNV-1a, 64 bits
+  const auto add = [&](const void* data, std::size_t bytes) {
+    for (std::size_t i = 0; i < bytes; ++i) h = (h ^ static_cast<const unsigned char*>(data)[i]) * 0x100000001b3;
+  };
+  add(&step, sizeof step);
+  add(&time, sizeof time);
+  add(x.data(), x.size() * sizeof(Vec3));
+  add(v.data(), v.size() * sizeof(Vec3));
+  for (const BodyState& b : bodies) {
+    add(b.pose.rotation.data(), sizeof(Mat3));
+    add(b.pose.position.data(), sizeof(Vec3));
+    add(b.velocity.data(), sizeof(Vec3));
+    add(b.angular_momentum.data(), sizeof(Vec3));
+  }
+  add(grip_base.data(), grip_base.size() * sizeof(Vec3));
+  add(grip_closed.data(), grip_closed.size() * sizeof(int));
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(h));
+  return text;
+}
+
+std::vector<Vec3> vertex_positions(const World& world, const State& state) {
+  std::vector<Vec3> x = world.assembly.x;
+  std::copy(state.x.begin(), state.x.end(), x.begin());
+  for (std::size_t v = state.x.size(); v < x.size(); ++v)
+    if (const int b = world.assembly.owner[v].body; b >= 0)
+      x[v] = apply(state.bodies[static_cast<std::size_t>(b)].pose, world.assembly.local[v]);
+  return x;
+}
+
+void close_grips(const World& world, State& state) {
+  const Scene& scene = world.setup.scene;
+  const std::vector<Vec3> x = vertex_positions(world, state);
+  std::size_t spring = 0;
+  for (std::size_t g = 0; g < scene.grips.size(); ++g) {
+    const bool closes = state.grip_closed[g] == 0 && state.time >= scene.grips[g].start;
+    if (closes) state.grip_closed[g] = 1;
+    for (int v : world.assembly.grips[g].vertices) {
+      if (closes) state.grip_base[spring] = x[static_cast<std::size_t>(v)];
+      ++spring;
+    }
+  }
+}
+
+Drive Drive::at(const World& world, const State& state, Real dt) {
+  const Scene& scene = world.setup.scene;
+  const Real end = state.time + dt;
+  Drive drive;
+  for (std::size_t g = 0; g < scene.grips.size(); ++g) {
+    const Grip& grip = scene.grips[g];
+    const Assembly::GripPart& part = world.assembly.grips[g];
+    const bool closed = state.grip_closed[g] != 0 && end <= grip.end;
+    for (std::size_t k = 0; k < part.vertices.size(); ++k) {
+      drive.grip_target.push_back(state.grip_base[drive.grip_target.size()] + grip_offset(grip, end));
+      drive.grip_stiffness.push_back(closed ? part.stiffness : 0);
+    }
+  }
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const BodyPart& part = world.assembly.bodies[b];
+    const BodyState& body = state.bodies[b];
+    Pose target = body.pose;
+    if (part.motion == Motion::driven) {
+      const Pose mesh = driven_pose(scene.bodies[b], end);
+      target = {mesh.rotation, apply(mesh, part.mesh_offset)};
+    } else if (part.motion == Motion::dynamic) {
+      target = {free_flight(body.pose.rotation, body.angular_momentum, part.mass.second, dt), body.pose.position + dt * body.velocity};
+    }
+    drive.body_target.push_back(target);
+  }
+  return drive;
+}
+}  // namespace tape

@@ -1,0 +1,46 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tape/step/stepper.hpp"
+
+namespace tape::test {
+/// A scene in memory that steps and keeps an eye on what every step must keep (checks.md, part 9): finite, no intersection,
+/// gaps above zero, no limit reached in silence.
+class Simulation {
+ public:
+  explicit Simulation(Setup setup, Backend backend = Backend::cpu);
+  /// One step; what it broke is added to `broken`.
+  const StepReport& step();
+  /// Steps until `time` [s]; stops at the first failed step.
+  void run_to(Real time, const std::function<void(const Simulation&)>& each = {});
+  const World& world() const { return *world_; }
+  const State& state() const { return state_; }
+  State& state() { return state_; }
+  const StepReport& report() const { return report_; }
+  std::vector<Vec3> x() const { return vertex_positions(*world_, state_); }
+  /// Mechanical energy [J]: kinetic and all potentials.
+  Real energy() const;
+
+  bool check_intersections = true;
+  std::vector<std::string> broken;  ///< in words, with the step; empty: all is well
+  Real min_gap = 1e300;             ///< [m] over all steps
+  int newton_max = 0, newton_sum = 0;
+
+ private:
+  std::unique_ptr<World> world_;
+  State state_;
+  std::unique_ptr<Stepper> stepper_;
+  StepReport report_;
+};
+
+/// The 19-mm vinyl tape of the paper's Table I.
+Film vinyl();
+/// A strip of that film, flat, from `start` along x, `cells` over its width.
+Strip flat_strip(Real length, int cells, const Vec3& start);
+/// A scene with one such strip; dt 0.01 s, tolerance 1e-3 m/s.
+Setup strip_setup(const Strip& strip);
+Body& add_body(Setup& setup, const std::string& name, TriangleMesh mesh, Motion motion, const Vec3& position);
+}  // namespace tape::test
