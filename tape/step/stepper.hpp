@@ -37,9 +37,9 @@ struct StepReport {
   int linear_iterations = 0;
   int linear_failures = 0;  ///< solves that ended at their iteration limit
   std::string linear_solver;
-  Real last_update = 0;          ///< [m] largest move of a vertex in the last Newton update, before any limit
-  Real stop_error_estimate = 0;  ///< [m] what the stop may have left on the table
-  Real min_gap = 0;              ///< [m] smallest d - xi among candidate pairs at the end; infinite without any
+  Real last_update = 0;                                  ///< [m] largest move of a vertex in the last Newton update, before any limit
+  Real stop_error_estimate = 0;                          ///< [m] what the stop may have left on the table
+  Real min_gap = std::numeric_limits<Real>::infinity();  ///< [m] smallest d - xi among candidate pairs at the end; infinite without any
   int candidates = 0, active_pairs = 0, searches = 0;
   int ccd_capped = 0;                    ///< CCD queries that ended at their iteration limit (the step was shorter, still safe)
   Real kinetic = 0;                      ///< [J] at the end of the step
