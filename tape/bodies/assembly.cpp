@@ -119,12 +119,21 @@ void add_grip(Assembly& a, const Scene& scene, const Grip& grip) {
   a.grips.push_back(std::move(part));
 }
 
-/// Stiffness of a grip that names none: holds a thousand times the weight of all that moves within a micrometre.
-void choose_stiffness(Assembly& a) {
-  Real total = 0;
+/// Stiffness [N/m] of a grip that names none: so stiff that the weight of all that moves shifts it by a thousandth of a
+/// micrometre, and that pulling on a strip stretches the strip ten thousand times as much.
+Real default_stiffness(const Assembly& a, const Scene& scene) {
+  Real total = 0, strip = 0;
   for (Real m : a.mass) total += m;
+  for (const Strip& s : scene.strips) {
+    const Film& film = scene.films[static_cast<std::size_t>(s.film)];
+    strip = std::max(strip, film.membrane_modulus * film.thickness * film.width / s.mesh.length);
+  }
+  return std::max(total * 9.81 / 1e-9, 1e4 * strip);
+}
+
+void choose_stiffness(Assembly& a, const Scene& scene) {
   for (Assembly::GripPart& grip : a.grips)
-    if (grip.stiffness == 0) grip.stiffness = 1e3 * total * 9.81 / 1e-6 / static_cast<Real>(grip.vertices.size());
+    if (grip.stiffness == 0) grip.stiffness = default_stiffness(a, scene) / static_cast<Real>(grip.vertices.size());
 }
 }  // namespace
 
@@ -139,7 +148,7 @@ Assembly assemble(const Scene& scene) {
     a.mass[static_cast<std::size_t>(a.bodies[b].centre)] = a.bodies[b].mass.mass;
   }
   for (const Grip& grip : scene.grips) add_grip(a, scene, grip);
-  choose_stiffness(a);
+  choose_stiffness(a, scene);
   return a;
 }
 }  // namespace tape

@@ -18,6 +18,36 @@ struct Configuration {
   }
 };
 
+namespace coordinates {
+struct MoveBody {
+  Span<const Pose> from;
+  Span<const Vec3> direction;
+  Span<const int> block;
+  Real step;
+  Span<Pose> to;
+  Span<Vec3> to_position;
+  TAPE_HD void operator()(int b) const {
+    if (block[b] < 0) return;
+    const Mat3 turn = rotation_exp(step * direction[block[b] + 1]);
+    to[b] = {turn * from[b].rotation, from[b].position + step * direction[block[b]]};
+    to_position[b] = to[b].position;
+  }
+};
+struct MoveVertex {
+  Span<const Vec3> from, direction;
+  Span<const VertexOwner> owner;
+  Span<const Vec3> local;
+  Span<const Pose> body;
+  Real step;
+  Span<Vec3> to;
+  TAPE_HD void operator()(int v) const {
+    const VertexOwner o = owner[v];
+    if (o.block < 0) return;
+    to[v] = o.body < 0 ? Vec3(from[v] + step * direction[o.block]) : apply(body[o.body], local[v]);
+  }
+};
+}  // namespace coordinates
+
 /// What moves the vertices: constant for a run.
 class Coordinates {
  public:
@@ -31,41 +61,15 @@ class Coordinates {
   /// to = from moved by `step` times the direction [blocks] m and rad. Fixed things keep what `to` has.
   void move(const Configuration& from, Span<const Vec3> direction, Real step, Configuration& to) const {
     parallel_for(from.body.size(),
-                 MoveBody{from.body.span(), direction, body_block_.span(), step, to.body.span(), to.body_position.span()});
-    parallel_for(from.x.size(), MoveVertex{from.x.span(), direction, owner_.span(), local_.span(), to.body.span(), step, to.x.span()});
+                 coordinates::MoveBody{from.body.span(), direction, body_block_.span(), step, to.body.span(), to.body_position.span()});
+    parallel_for(from.x.size(),
+                 coordinates::MoveVertex{from.x.span(), direction, owner_.span(), local_.span(), to.body.span(), step, to.x.span()});
   }
   PathView paths(const Configuration& from, Span<const Vec3> direction) const {
     return {from.x.span(), owner_.span(), direction, from.body_position.span()};
   }
 
  private:
-  struct MoveBody {
-    Span<const Pose> from;
-    Span<const Vec3> direction;
-    Span<const int> block;
-    Real step;
-    Span<Pose> to;
-    Span<Vec3> to_position;
-    TAPE_HD void operator()(int b) const {
-      if (block[b] < 0) return;
-      const Mat3 turn = rotation_exp(step * direction[block[b] + 1]);
-      to[b] = {turn * from[b].rotation, from[b].position + step * direction[block[b]]};
-      to_position[b] = to[b].position;
-    }
-  };
-  struct MoveVertex {
-    Span<const Vec3> from, direction;
-    Span<const VertexOwner> owner;
-    Span<const Vec3> local;
-    Span<const Pose> body;
-    Real step;
-    Span<Vec3> to;
-    TAPE_HD void operator()(int v) const {
-      const VertexOwner o = owner[v];
-      if (o.block < 0) return;
-      to[v] = o.body < 0 ? Vec3(from[v] + step * direction[o.block]) : apply(body[o.body], local[v]);
-    }
-  };
   Buffer<VertexOwner> owner_;
   Buffer<Vec3> local_;
   Buffer<int> body_block_;

@@ -53,6 +53,13 @@ struct Membrane {
   TAPE_HD Mat2 stress(const Mat2& G, int i) const {  // [J]
     return 2 * elements[i].mu * G + elements[i].lambda * G.trace() * Mat2::Identity();
   }
+  /// Larger principal strain in magnitude [1]: stretch less one.
+  TAPE_HD Real strain(const StateView& s, int i) const {
+    const Mat32 F = deformation_gradient(s, i);
+    const Mat2 C = F.transpose() * F;
+    const Real mean = C.trace() / 2, radius = std::hypot((C(0, 0) - C(1, 1)) / 2, C(0, 1));
+    return std::fmax(std::fabs(std::sqrt(mean + radius) - 1), std::fabs(std::sqrt(std::fmax(mean - radius, 0.0)) - 1));
+  }
   TAPE_HD Real energy(const StateView& s, int i) const {
     const Mat2 G = green_strain(deformation_gradient(s, i));
     return elements[i].mu * G.squaredNorm() + elements[i].lambda / 2 * G.trace() * G.trace();

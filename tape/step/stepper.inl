@@ -56,6 +56,21 @@ struct Gap {
     return combine(closest(p.kind, at).weight, at).norm() - p.xi;
   }
 };
+struct Copy {
+  Span<const ContactPair> from;
+  Span<ContactPair> to;
+  TAPE_HD void operator()(int i) const { to[i] = from[i]; }
+};
+template <class T>
+struct Strain {
+  T term;
+  StateView s;
+  TAPE_HD Real operator()(int i) const { return term.strain(s, i); }
+};
+struct Fill {
+  Span<Vec3> out;
+  TAPE_HD void operator()(int i) const { out[i].setZero(); }
+};
 }  // namespace stepping
 
 /// One step of the solver on one side.
@@ -130,6 +145,8 @@ class SideStepper final : public Stepper {
     std::vector<Pose> pose;
     for (const BodyState& b : state.bodies) pose.push_back(b.pose), centre.push_back(b.pose.position);
     dt_ = dt;
+    extent_ = 0;
+    for (const Vec3& p : x) extent_ = std::fmax(extent_, p.cwiseAbs().maxCoeff());
     start_.x.upload(x);
     start_.body.upload(pose);
     start_.body_position.upload(centre);
@@ -198,7 +215,7 @@ class SideStepper final : public Stepper {
   /// Newton's method from now_ == start_ to the end of the step.
   bool newton(StepReport& report) {
     const NewtonParams& params = world_.setup.newton;
-    parallel_for(direction_.size(), Fill{direction_.span()});
+    parallel_for(direction_.size(), stepping::Fill{direction_.span()});
     update_candidates(direction_.span());
     objective_->begin_step(view(now_));
     Real previous = 0;
@@ -208,6 +225,7 @@ class SideStepper final : public Stepper {
       const Real slope = -reduce(direction_.size(), 0.0, stepping::Dot{right_.span(), direction_.span()}, stepping::Plus{});
       const Real moved = reduce(now_.x.size(), 0.0, stepping::Travel{coordinates_.paths(now_, direction_.span())}, stepping::Larger{});
       if (!std::isfinite(moved) || !std::isfinite(slope)) return fail(report, "the Newton direction is not finite");
+      if (moved <= kPositionRoundOff * extent_) return true;  // no update is left that positions could hold
       const Real rho = k > 0 && previous > 0 ? std::fmin(moved / previous, 0.99) : 0;
       report.last_update = moved;
       report.stop_error_estimate = k > 0 ? moved * rho / (1 - rho) : moved;
@@ -311,7 +329,7 @@ class SideStepper final : public Stepper {
         report.min_gap = reduce(pairs.size, report.min_gap, stepping::Gap{pairs, s.x}, stepping::SmallerReal{});
       }
       if constexpr (requires { term.view.strain(s, 0); })
-        report.max_strain = reduce(term.view.elements.size, 0.0, Strain<T>{term.view, s}, stepping::Larger{});
+        report.max_strain = reduce(term.view.elements.size, 0.0, stepping::Strain<T>{term.view, s}, stepping::Larger{});
       report.effects.push_back(line);
     });
     report.stages = {{"broad_phase", search_ms_},
@@ -324,25 +342,9 @@ class SideStepper final : public Stepper {
   static std::vector<ContactPair> pairs_on_host(Span<const ContactPair> pairs) {
     Buffer<ContactPair> copy;
     copy.resize(pairs.size);
-    parallel_for(pairs.size, Copy{pairs, copy.span()});
+    parallel_for(pairs.size, stepping::Copy{pairs, copy.span()});
     return copy.download();
   }
-
-  struct Copy {
-    Span<const ContactPair> from;
-    Span<ContactPair> to;
-    TAPE_HD void operator()(int i) const { to[i] = from[i]; }
-  };
-  template <class T>
-  struct Strain {
-    T term;
-    StateView s;
-    TAPE_HD Real operator()(int i) const { return term.strain(s, i); }
-  };
-  struct Fill {
-    Span<Vec3> out;
-    TAPE_HD void operator()(int i) const { out[i].setZero(); }
-  };
 
   const World& world_;
   Coordinates coordinates_;
@@ -353,7 +355,8 @@ class SideStepper final : public Stepper {
   Buffer<Vec3> x_tilde_, grip_target_, direction_, right_;
   Buffer<Pose> body_target_;
   Buffer<Real> grip_stiffness_, mu_;
-  Real dt_ = 0, moving_mass_ = 0;
+  static constexpr Real kPositionRoundOff = 1e-15;
+  Real dt_ = 0, moving_mass_ = 0, extent_ = 0;  // extent_: largest coordinate [m]
   bool contact_on_ = false;
   Real search_ms_ = 0, assembly_ms_ = 0, linear_ms_ = 0, ccd_ms_ = 0, line_search_ms_ = 0;
   int searches_ = 0;

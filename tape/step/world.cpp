@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "tape/bodies/free_flight.hpp"
+#include "tape/contact/containment.hpp"
 #include "tape/contact/intersection.hpp"
 #include "tape/math/rotation.hpp"
 #include "tape/model/motion.hpp"
@@ -44,6 +45,7 @@ World World::build(Setup setup) {
   world.surface = make_surface(setup.scene, world.assembly);
   world.setup = std::move(setup);
   check_start(world.assembly.x, world.surface, world.setup.scene.dhat());
+  check_nothing_inside(world.assembly.x, world.surface);
   return world;
 }
 

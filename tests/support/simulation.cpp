@@ -1,5 +1,7 @@
 #include "tests/support/simulation.hpp"
 
+#include <cmath>
+
 #include "tape/contact/intersection.hpp"
 
 namespace tape::test {
@@ -37,6 +39,18 @@ void Simulation::run_to(Real time, const std::function<void(const Simulation&)>&
 Real Simulation::energy() const {
   Real sum = report_.kinetic;
   for (const EffectReport& e : report_.effects) sum += e.energy;
+  return sum;
+}
+
+Real Simulation::energy_scale() const {
+  Eigen::AlignedBox<Real, 3> box;
+  Real mass = 0;
+  for (std::size_t v = 0; v < world_->assembly.x.size(); ++v) {
+    mass += world_->assembly.mass[v];
+    if (world_->assembly.owner[v].block >= 0) box.extend(world_->assembly.x[v]);
+  }
+  Real sum = report_.kinetic + mass * world_->setup.scene.gravity.norm() * box.diagonal().norm();
+  for (const EffectReport& e : report_.effects) sum += std::fabs(e.energy);
   return sum;
 }
 

@@ -23,6 +23,8 @@ class Simulation {
   std::vector<Vec3> x() const { return vertex_positions(*world_, state_); }
   /// Mechanical energy [J]: kinetic and all potentials.
   Real energy() const;
+  /// What a change of energy is measured against [J]: the magnitudes of its parts, and lifting all that moves by its own size.
+  Real energy_scale() const;
 
   bool check_intersections = true;
   std::vector<std::string> broken;  ///< in words, with the step; empty: all is well

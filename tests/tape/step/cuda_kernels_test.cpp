@@ -1,0 +1,70 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <memory>
+#include <set>
+#include <string>
+
+#include "tape/core/execution.hpp"
+#include "tape/math/rotation.hpp"
+#include "tape/model/primitives.hpp"
+#include "tests/support/simulation.hpp"
+using namespace tape;
+
+namespace {
+std::string without_spaces(std::string text) {
+  std::erase(text, ' ');
+  return text;
+}
+/// Demangled names of all symbols of a library.
+std::string symbols_of(const std::string& library) {
+  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(("nm -C " + library + " 2>/dev/null").c_str(), "r"), pclose);
+  std::string all;
+  std::array<char, 4096> part;
+  while (std::fgets(part.data(), part.size(), pipe.get()) != nullptr) all += part.data();
+  return without_spaces(all);
+}
+/// Launches whatever a scene with strips, driven and dynamic bodies, grips and friction launches, with both linear solvers.
+std::set<std::string> launched_kernels() {
+  record_launches(true);
+  for (const LinearKind linear : {LinearKind::cholesky, LinearKind::pcg_jacobi}) {
+    auto setup = test::strip_setup(test::flat_strip(0.04, 3, Vec3(-0.02, 0, 3e-4)));
+    setup.linear.linear = linear;
+    test::add_body(setup, "table", box_mesh(Vec3(0.1, 0.06, 0.01)), Motion::fixed, Vec3(0, 0, -0.005));
+    test::add_body(setup, "box", box_mesh(Vec3(0.01, 0.01, 0.01)), Motion::dynamic, Vec3(0, 0, 0.0056));
+    test::add_body(setup, "pusher", box_mesh(Vec3(0.01, 0.01, 0.01)), Motion::driven, Vec3(0, 0.03, 0.006)).velocity = Vec3(0, -0.1, 0);
+    Grip grip;
+    grip.name = "pull";
+    grip.what = {.object = "tape", .vertices = {0, 1, 2, 3}, .points = {}};
+    setup.scene.grips.push_back(grip);
+    test::Simulation simulation(setup);
+    for (int k = 0; k < 5; ++k) simulation.step();
+    EXPECT_TRUE(simulation.broken.empty()) << simulation.broken.front();
+  }
+  record_launches(false);
+  return recorded_launches();
+}
+}  // namespace
+
+/// The CPU launches a kernel by the name tape::on_cpu::X; then the CUDA library must hold a launch of tape::on_cuda::X.
+TEST(CudaKernels, EveryKernelThatAStepLaunchesExistsForCuda) {
+  const std::set<std::string> launched = launched_kernels();
+  EXPECT_GT(launched.size(), 30u);
+#ifdef TAPE_CUDA_LIBRARY
+  const std::string symbols = symbols_of(TAPE_CUDA_LIBRARY);
+  ASSERT_NE(symbols.find("tape::on_cuda::detail::run<"), std::string::npos) << "no kernels at all in " << TAPE_CUDA_LIBRARY;
+  for (std::string name : launched) {
+    if (name.find("tape::on_cpu::") == std::string::npos) continue;  // a kernel of some test
+    for (std::size_t at; (at = name.find("on_cpu")) != std::string::npos;) name.replace(at, 6, "on_cuda");
+    name = without_spaces(name);
+    const bool there =
+        symbols.find("detail::run<" + name + ">(int," + name) != std::string::npos || symbols.find("," + name + ",") != std::string::npos;
+    EXPECT_TRUE(there) << name << " is launched on the CPU and has no CUDA instantiation";
+  }
+  EXPECT_EQ(symbols.find("detail::run<tape::on_cuda::NoSuchKernel>"), std::string::npos);
+#else
+  GTEST_SKIP() << "this build has no CUDA back end";
+#endif
+}
