@@ -1,0 +1,80 @@
+#include "apps/report/json.hpp"
+
+namespace tape::report {
+namespace {
+Json effects_json(const RunSummary& summary) {
+  Json effects = Json::object();
+  for (const cosim::EffectSummary& e : summary.effects)
+    effects[e.plan.name] = {{"on", e.plan.on}, {"why", e.plan.why}, {"ms_per_step", e.ms_per_step}};
+  return effects;
+}
+Json conditions_json(const RunSummary& summary) {
+  Json conditions = Json::array();
+  for (const cosim::Condition& c : summary.conditions)
+    conditions.push_back({{"name", c.name}, {"value", c.value}, {"required", c.required}, {"met", c.met}});
+  return conditions;
+}
+}  // namespace
+
+Json settings_json(const Setup& setup) {
+  Json json = Json::object();
+  const Scene& scene = setup.scene;
+  add_fields(json["time"], scene.time);
+  add_fields(json["contact"], scene.contact);
+  json["gravity"] = {scene.gravity.x(), scene.gravity.y(), scene.gravity.z()};
+  json["seed"] = scene.seed;
+  for (const Film& film : scene.films) add_fields(json["films"][film.name], film);
+  for (const Strip& strip : scene.strips) {
+    add_fields(json["strips"][strip.name], strip.mesh);
+    json["strips"][strip.name]["film"] = scene.films[static_cast<std::size_t>(strip.film)].name;
+  }
+  for (const Material& material : scene.materials) json["materials"][material.name] = {{"mu", material.mu}};
+  for (const FrictionPair& pair : scene.frictions)
+    json["interfaces"].push_back(
+        {{"between", {scene.materials[static_cast<std::size_t>(pair.a)].name, scene.materials[static_cast<std::size_t>(pair.b)].name}},
+         {"mu", pair.mu}});
+  add_fields(json["solver"], setup.newton);
+  add_fields(json["solver"], setup.linear);
+  for_each_effect([&]<class T>(std::type_identity<T>) {
+    Json section = Json::object();
+    add_fields(section, params<T>(setup.effects));
+    if (!section.empty()) json[std::string(T::name)] = section;
+  });
+  for (const auto& [name, on] : setup.forced) json["effects"][name] = on;
+  return json;
+}
+
+Json report_json(const Provenance& provenance, const World& world, const RunSummary& s) {
+  Json json = {{"status", s.status}};
+  if (!s.failure.empty()) json["failure"] = s.failure;
+  json["scene"] = world.setup.scene.name;
+  json["scene_file"] = provenance.scene_file;
+  json["model"] = nullptr;  // of a roll; this scene has none
+  json["backend"] = provenance.backend;
+  json["threads"] = provenance.threads;
+  json["version"] = provenance.version;
+  json["settings"] = settings_json(world.setup);
+  json["steps"] = s.steps;
+  json["resumed_from_step"] = provenance.first_step;
+  json["sim_time_s"] = s.sim_time;
+  json["wall_s"] = s.wall;
+  json["real_time_factor"] = s.wall > 0 ? s.sim_time / s.wall : 0;
+  json["step_ms"] = {{"mean", s.step_ms.mean}, {"p50", s.step_ms.p50}, {"p95", s.step_ms.p95}, {"max", s.step_ms.max}};
+  json["newton"] = {{"mean", s.newton_mean}, {"max", s.newton_max}, {"failed_steps", s.failed_steps}};
+  json["linear"] = {{"solver", s.linear_solver}, {"iterations_mean", s.linear_iterations_mean}};
+  json["hessian_mode"] = to_text(world.setup.newton.hessian);
+  json["hessian_fallbacks"] = s.hessian_fallbacks;
+  json["stop_error_estimate_m"] = s.stop_error_estimate;
+  json["min_gap_m"] = s.min_gap;
+  json["intersections"] = s.intersections;
+  json["energy_drift"] = s.energy_drift;
+  json["state_hash"] = s.state_hash;
+  json["effects"] = effects_json(s);
+  json["stages_ms_per_step"] = Json::object();
+  for (const StageReport& stage : s.stages) json["stages_ms_per_step"][stage.name] = stage.ms;
+  json["conditions"] = conditions_json(s);
+  json["figures"] = Json::object();
+  for (const auto& [name, value] : s.figures) json["figures"][name] = value;
+  return json;
+}
+}  // namespace tape::report

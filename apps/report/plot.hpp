@@ -1,0 +1,26 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tape/core/types.hpp"
+
+namespace tape::report {
+struct PlotPoint {
+  Real x = 0, y = 0;
+  std::string label;    ///< beside the point; may be empty
+  bool pareto = false;  ///< marked, and joined with the other marked ones
+};
+/// Log-log scatter plot. Points that are not positive and finite cannot be shown and are left out.
+struct Plot {
+  std::string title, x_label, y_label;
+  std::vector<PlotPoint> points;
+};
+
+/// The points that no other beats in both respects (less is better), in the order given. Points that are not finite are never on the front.
+std::vector<bool> pareto_front(const std::vector<Real>& cost, const std::vector<Real>& error);
+
+/// Draws `base`.png and `base`.svg with gnuplot.
+/// @throws InputError where gnuplot is missing or fails, or the folder cannot be written
+void write_plot(const Plot& plot, const std::filesystem::path& base);
+}  // namespace tape::report

@@ -1,0 +1,46 @@
+#include "apps/report/steps_csv.hpp"
+
+#include <algorithm>
+
+namespace tape::report {
+namespace {
+/// Visits (name, value) of every column; `row` may be empty when only names are wanted.
+template <class F>
+void visit_columns(const World& world, const cosim::StepRow& row, const F& f) {
+  const StepReport& r = row.report;
+  f("step", row.step), f("time_s", row.time), f("ms", r.wall_ms);
+  f("newton", r.newton), f("linear_iterations", r.linear_iterations), f("halvings", r.halvings), f("substeps", r.substeps);
+  f("hessian_fallbacks", r.hessian_fallbacks), f("stop_error_estimate_m", r.stop_error_estimate), f("last_update_m", r.last_update);
+  f("min_gap_m", r.min_gap), f("candidates", r.candidates), f("active_pairs", r.active_pairs), f("searches", r.searches);
+  f("max_strain", r.max_strain), f("kinetic_J", r.kinetic);
+  for (const PlanLine& line : world.plan) {
+    if (!line.on) continue;
+    const auto found = std::find_if(r.effects.begin(), r.effects.end(), [&](const EffectReport& e) { return e.name == line.name; });
+    f(line.name + "_J", found == r.effects.end() ? 0 : found->energy);
+    f(line.name + "_ms", found == r.effects.end() ? 0 : found->ms);
+  }
+  f("drive_work_J", row.energy.work), f("energy_balance_J", row.energy.balance);
+  const auto vector = [&](const std::string& name, const std::string& unit, const Vec3& v) {
+    for (int c = 0; c < 3; ++c) f(name + "_" + "xyz"[c] + "_" + unit, v[c]);
+  };
+  const auto at = [](const std::vector<Vec3>& values, std::size_t i) { return i < values.size() ? values[i] : Vec3(Vec3::Zero()); };
+  vector("momentum", "kg_m_per_s", r.momentum);
+  for (std::size_t g = 0; g < world.setup.scene.grips.size(); ++g)
+    vector("grip_" + world.setup.scene.grips[g].name, "N", at(r.grip_force, g));
+  for (std::size_t b = 0; b < world.setup.scene.bodies.size(); ++b)
+    if (world.assembly.bodies[b].motion != Motion::fixed) vector("body_" + world.setup.scene.bodies[b].name, "N", at(r.body_force, b));
+}
+}  // namespace
+
+std::vector<std::string> step_columns(const World& world) {
+  std::vector<std::string> names;
+  visit_columns(world, {}, [&](const std::string& name, Real) { names.push_back(name); });
+  return names;
+}
+
+std::vector<std::string> step_cells(const World& world, const cosim::StepRow& row) {
+  std::vector<std::string> cells;
+  visit_columns(world, row, [&](const std::string&, Real value) { cells.push_back(tape::to_text(value)); });
+  return cells;
+}
+}  // namespace tape::report

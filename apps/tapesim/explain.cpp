@@ -1,0 +1,68 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "apps/tapesim/scene_input.hpp"
+
+namespace tape::tapesim {
+namespace {
+struct Line {
+  std::string name;
+  bool on;
+  std::string why;
+};
+
+/// What asks for an effect, with the line of the scene that does, if one does.
+std::string reason(const cosim::RunInput& input, const PlanLine& line) {
+  const std::string where = input.file.where(line.why);
+  return where.empty() ? line.why : fmt::format("{} ({})", line.why, where);
+}
+
+/// Stages of a step that are not effects, and parts of the testbed that this build leaves out.
+std::vector<Line> stages(const World& world) {
+  const auto on = [&](std::string_view effect) {
+    return std::any_of(world.plan.begin(), world.plan.end(), [&](const PlanLine& line) { return line.name == effect && line.on; });
+  };
+  const bool contact = on(Barrier::name);
+  const std::string why = contact ? "barrier" : "barrier is off";
+  return {
+      {"broad_phase", contact, why},
+      {"narrow_phase", contact, why},
+      {"ccd", contact, why},
+      {"assembly", true, "every step"},
+      {"linear_solver", true, "solver.linear: " + to_text(world.setup.linear.linear)},
+      {"line_search", true, "every step"},
+      {"history", false, "no effect of this build remembers"},
+      {"reduction", false, "not in this build"},
+      {"cutting", false, "not in this build"},
+      {"sleeping", false, "not in this build"},
+      {"cosim", false, "not in this build"},
+  };
+}
+
+int explain(const SceneArguments& arguments, const std::string& backend_name) {
+  const LoadedWorld loaded = load_world(arguments);
+  if (backend_name == "cuda" && !cuda_available()) throw InputError("--backend cuda: no CUDA device answers, or this build has no CUDA");
+  const std::string backend = backend_name == "cpu" || !cuda_available() ? "cpu" : "cuda";
+  std::vector<Line> lines;
+  for (const PlanLine& line : loaded.world.plan) lines.push_back({line.name, line.on, reason(loaded.input.run, line)});
+  for (Line& line : stages(loaded.world)) lines.push_back(std::move(line));
+  for (const Line& line : lines) {
+    const bool host = line.name == "linear_solver" && loaded.world.setup.linear.linear == LinearKind::cholesky;
+    const std::string where = line.on ? fmt::format(" [{}]", host ? "cpu" : backend) : "";
+    fmt::print("{:<13} {:<3} {}{}\n", line.name, line.on ? "on" : "off", line.why, where);
+  }
+  return kDone;
+}
+}  // namespace
+
+void add_explain(CLI::App& app, Action& chosen) {
+  auto arguments = std::make_shared<SceneArguments>();
+  auto backend = std::make_shared<std::string>("auto");
+  CLI::App* command = app.add_subcommand("explain", "says which effects and stages run, and what asks for them");
+  add_scene(*command, *arguments);
+  command->add_option("--backend", *backend, "auto, cpu or cuda")->check(CLI::IsMember({"auto", "cpu", "cuda"}));
+  command->callback([=, &chosen] { chosen = [=] { return explain(*arguments, *backend); }; });
+}
+}  // namespace tape::tapesim

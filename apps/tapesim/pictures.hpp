@@ -1,0 +1,48 @@
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <variant>
+
+#include "apps/render/camera.hpp"
+#include "apps/render/colors.hpp"
+#include "apps/video/video.hpp"
+#include "cosim/run/state_file.hpp"
+#include "cosim/scene/reader.hpp"
+
+namespace tape::tapesim {
+/// How a recording is shown: section `video` of a scene.
+struct ViewParams {
+  render::ColorBy color = render::ColorBy::material;
+  bool ground = true;
+  template <class F>
+  void fields(F&& f) {
+    f("color", color, "", Range::any(), "what colours mean");
+    f("ground", ground, "", Range::any(), "a ground with lines each 10 mm at the lowest point of the scene");
+  }
+};
+/// Section `camera`: by where it looks, or calibrated; without one the camera takes in the whole motion of what moves.
+using CameraParams = std::variant<std::monostate, render::LookAtSettings, render::PinholeSettings>;
+struct PictureParams {
+  ViewParams view;
+  video::VideoSettings video;
+  CameraParams camera;
+};
+/// Sections `video` and `camera` of a file.
+PictureParams read_pictures(const cosim::Reader& root);
+/// What stands in `camera`: `fx` and the like make it a calibrated one.
+CameraParams read_camera(const cosim::Reader& camera);
+/// A camera file: the keys of a `camera` section, or a file with such a section.
+CameraParams load_camera(const std::filesystem::path& file);
+/// As text that a recording can keep, and back.
+std::string camera_text(const CameraParams& camera);
+CameraParams parse_camera(const std::string& text);
+
+/// Told after each picture: done, of.
+using PictureProgress = std::function<void(int, int)>;
+/// The whole recording, at the speed of the simulation.
+void write_video(const cosim::StateReader& recording, const PictureParams& params, const std::filesystem::path& file,
+                 const PictureProgress& progress);
+/// One recorded state. @param frame  counted from 0; negative: from the end
+void write_still(const cosim::StateReader& recording, const PictureParams& params, int frame, const std::filesystem::path& file);
+}  // namespace tape::tapesim

@@ -1,0 +1,40 @@
+#include "apps/tapesim/progress.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+namespace tape::tapesim {
+std::string duration_text(double seconds) {
+  const long s = static_cast<long>(seconds + 0.5);
+  if (s < 60) return fmt::format("{} s", s);
+  if (s < 3600) return fmt::format("{} min {:02} s", s / 60, s % 60);
+  return fmt::format("{} h {:02} min", s / 3600, s / 60 % 60);
+}
+
+Progress::Progress(std::string what, int total)
+    : what_(std::move(what)), total_(std::max(1, total)), terminal_(isatty(STDERR_FILENO) == 1), start_(Clock::now()), last_(start_) {}
+
+Progress::~Progress() {
+  if (open_) fmt::print(stderr, "\n");
+}
+
+void Progress::update(int done, const std::string& note) {
+  const double share = std::min(1.0, static_cast<double>(done) / total_);
+  const std::string left = done > 0 && done < total_ ? ", " + duration_text(seconds_since(start_) * (1 - share) / share) + " left" : "";
+  if (terminal_) {
+    if (done < total_ && seconds_since(last_) < 0.1) return;
+    const auto filled = static_cast<std::size_t>(30 * share);
+    fmt::print(stderr, "\r{} [{:<30}] {:3.0f} % {}/{} {}{}\033[K", what_, std::string(filled, '#'), 100 * share, done, total_, note, left);
+    std::fflush(stderr);
+    open_ = true;
+  } else {
+    const int tenth = static_cast<int>(10 * share + 1e-9);
+    if (tenth == tenth_ && seconds_since(last_) < 30) return;
+    fmt::print(stderr, "{}: {}/{} ({:.0f} %) {}{}\n", what_, done, total_, 100 * share, note, left);
+    tenth_ = tenth;
+  }
+  last_ = Clock::now();
+}
+}  // namespace tape::tapesim

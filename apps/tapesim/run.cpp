@@ -1,0 +1,114 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "apps/report/json.hpp"
+#include "apps/report/table.hpp"
+#include "apps/tapesim/interrupt.hpp"
+#include "apps/tapesim/progress.hpp"
+#include "apps/tapesim/run_folder.hpp"
+#include "apps/tapesim/scene_input.hpp"
+#include "apps/tapesim/settings_list.hpp"
+#include "cosim/run/summary.hpp"
+#include "tape/core/execution.hpp"
+
+namespace tape::tapesim {
+namespace {
+struct RunArguments {
+  SceneArguments scene;
+  std::string out, resume, backend = "auto";
+  int steps = -1, threads = 0;
+  bool video = false;
+};
+
+Backend backend_of(const std::string& name) {
+  const auto names = enum_names(Backend{});
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (names[i] == name) return static_cast<Backend>(i);
+  throw SettingsError("--backend", name, "auto, cpu or cuda");
+}
+
+bool runs_on_cuda(Backend backend) { return backend == Backend::cuda || (backend == Backend::automatic && cuda_available()); }
+
+cosim::RunLog simulate(const RunArguments& arguments, const LoadedWorld& loaded, Stepper& stepper, State& state, RunFolder& folder) {
+  const World& world = loaded.world;
+  const int first = state.step;
+  const int planned = cosim::planned_steps(world.setup.scene) - first;
+  Progress progress("run", arguments.steps < 0 ? planned : std::min(planned, arguments.steps));
+  cosim::RunOptions options{.max_steps = arguments.steps, .record = loaded.input.run.record};
+  options.stop_asked = interrupted;
+  options.on_step = [&](const State& now, const cosim::StepRow& row) {
+    folder.add_step(row);
+    progress.update(now.step - first, fmt::format("t {:.3f} s, {:.1f} ms/step", now.time, row.report.wall_ms));
+  };
+  options.on_record = [&](const State& now) { folder.add_state(now, now.step > first ? stepper.contact_force() : std::vector<Real>()); };
+  return cosim::simulate(world, stepper, state, options);
+}
+
+void print_summary(const cosim::RunSummary& s, const RunFolder& folder) {
+  using report::rounded;
+  fmt::print("{}: {} steps, {} s simulated in {} s ({} ms a step), Newton {} a step, linear solver {}\n", s.status, s.steps,
+             rounded(s.sim_time), rounded(s.wall), rounded(s.step_ms.mean), rounded(s.newton_mean), s.linear_solver);
+  if (!s.failure.empty()) fmt::print("failed at {}\n", s.failure);
+  for (const auto& [name, value] : s.figures) fmt::print("  {} = {}\n", name, rounded(value));
+  for (const cosim::Condition& c : s.conditions)
+    if (!c.met) fmt::print("  condition not met: {} = {} (required: {})\n", c.name, rounded(c.value), c.required);
+  fmt::print("  state {}, files in {}\n", s.state_hash, folder.path().string());
+}
+
+void print_how_to_resume(const RunArguments& arguments, const State& state, const RunFolder& folder) {
+  std::string overrides;
+  for (const std::string& one : arguments.scene.overrides) overrides += " --set '" + one + "'";
+  fmt::print("stopped after step {}. To go on:\n  tapesim run {} --resume {} --out {}{}{}\n", state.step, arguments.scene.scene,
+             (folder / "snapshot.h5").string(), folder.path().string(), overrides, arguments.video ? " --video" : "");
+}
+
+void make_video(const LoadedWorld& loaded, const RunFolder& folder) {
+  const cosim::StateReader recording(folder / "state.h5");
+  std::unique_ptr<Progress> pictures;
+  write_video(recording, loaded.input.pictures, folder / "video.mp4", [&](int done, int of) {
+    if (!pictures) pictures = std::make_unique<Progress>("video", of);
+    pictures->update(done);
+  });
+}
+
+int run(const RunArguments& arguments) {
+  set_threads(arguments.threads);
+  const Backend backend = backend_of(arguments.backend);
+  const LoadedWorld loaded = load_world(arguments.scene);
+  const std::unique_ptr<Stepper> stepper = make_stepper(backend, loaded.world);
+  State state = arguments.resume.empty() ? State::start(loaded.world) : load_snapshot(arguments.resume, loaded.world);
+  const int first_step = state.step;
+  RunFolder folder(arguments.out.empty() ? "out/" + loaded.world.setup.scene.name : arguments.out, loaded.world, state,
+                   camera_text(loaded.input.pictures.camera));
+  remember_interrupts();
+  const cosim::RunLog log = simulate(arguments, loaded, *stepper, state, folder);
+  const cosim::RunSummary summary = cosim::summarize(loaded.world, log, loaded.input.run.figures);
+  const report::Provenance provenance{arguments.scene.scene, TAPE_VERSION, runs_on_cuda(backend) ? "cuda" : "cpu", threads(), first_step};
+  const std::string json = report::report_json(provenance, loaded.world, summary).dump(2) + '\n';
+  folder.commit(state);
+  cosim::write_text(folder / "report.json", json);
+  if (arguments.video && !log.interrupted) make_video(loaded, folder);
+  print_summary(summary, folder);
+  if (log.interrupted) print_how_to_resume(arguments, state, folder);
+  return !log.failure.empty() ? kNumericalFailure : log.interrupted ? kInterrupted : kDone;
+}
+}  // namespace
+
+void add_run(CLI::App& app, Action& chosen) {
+  auto arguments = std::make_shared<RunArguments>();
+  CLI::App* command = app.add_subcommand("run", "simulates a scene");
+  add_scene(*command, arguments->scene);
+  command->add_option("--out", arguments->out,
+                      "folder for report.json, steps.csv, state.h5, snapshot.h5, video.mp4 (default: out/<scene>)");
+  command->add_option("--steps", arguments->steps, "at most so many steps now")->check(CLI::NonNegativeNumber);
+  command->add_option("--backend", arguments->backend, "auto, cpu or cuda")->check(CLI::IsMember({"auto", "cpu", "cuda"}));
+  command->add_option("--threads", arguments->threads, "threads of the CPU back end; 0: all cores. Results do not depend on it")
+      ->check(CLI::Range(0, 1024));
+  command->add_flag("--video", arguments->video, "also make video.mp4");
+  command->add_option("--resume", arguments->resume, "goes on from a snapshot.h5 of the same scene");
+  command->footer([] { return "Settings of a scene:\n" + settings_text(); });
+  command->callback([arguments, &chosen] { chosen = [arguments] { return run(*arguments); }; });
+}
+}  // namespace tape::tapesim

@@ -1,0 +1,65 @@
+#include "apps/tapesim/run_folder.hpp"
+
+#include <cstdlib>
+#include <fstream>
+
+#include "apps/report/steps_csv.hpp"
+#include "apps/report/table.hpp"
+
+namespace tape::tapesim {
+namespace fs = std::filesystem;
+namespace {
+std::string csv_line(const std::vector<std::string>& cells) { return report::to_csv({cells, {}}); }
+
+fs::path made(fs::path folder) {
+  cosim::make_folder(folder);
+  return folder;
+}
+}  // namespace
+
+RunFolder::RunFolder(fs::path folder, const World& world, const State& start, const std::string& camera)
+    : folder_(made(std::move(folder))),
+      world_(&world),
+      steps_(folder_ / "steps.csv"),
+      states_(folder_ / "state.h5", cosim::RecordedMesh::of(world, camera)) {
+  const std::string header = csv_line(report::step_columns(world));
+  steps_.write(header);
+  if (start.step == 0) return;
+  keep_earlier_steps(header, start.step);
+  keep_earlier_states(cosim::RecordedMesh::of(world, camera), start.step);
+}
+
+void RunFolder::keep_earlier_steps(const std::string& header, int step) {
+  std::ifstream earlier(folder_ / "steps.csv");
+  std::string line;
+  if (!std::getline(earlier, line) || line + '\n' != header) return;
+  while (std::getline(earlier, line))
+    if (std::atoi(line.c_str()) <= step) steps_.write(line + '\n');
+}
+
+void RunFolder::keep_earlier_states(const cosim::RecordedMesh& mesh, int step) {
+  if (!fs::exists(folder_ / "state.h5")) return;
+  const cosim::StateReader earlier(folder_ / "state.h5");
+  if (earlier.mesh().triangles != mesh.triangles || earlier.mesh().rest != mesh.rest) return;
+  for (int i = 0; i < earlier.frames(); ++i) {
+    const cosim::RecordedFrame frame = earlier.frame(i);
+    if (frame.step > step) break;
+    states_.add(frame);
+    last_recorded_ = frame.step;
+  }
+}
+
+void RunFolder::add_step(const cosim::StepRow& row) { steps_.write(csv_line(report::step_cells(*world_, row))); }
+
+void RunFolder::add_state(const State& state, std::vector<Real> contact_force) {
+  if (state.step <= last_recorded_) return;
+  states_.add(cosim::RecordedFrame::of(*world_, state, std::move(contact_force)));
+  last_recorded_ = state.step;
+}
+
+void RunFolder::commit(const State& state) {
+  save_snapshot((folder_ / "snapshot.h5").string(), *world_, state);
+  states_.commit();
+  steps_.commit();
+}
+}  // namespace tape::tapesim

@@ -1,0 +1,32 @@
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "cosim/run/new_file.hpp"
+#include "cosim/run/run_log.hpp"
+#include "cosim/run/state_file.hpp"
+
+namespace tape::tapesim {
+/// The files of a run: steps.csv, state.h5 and snapshot.h5 in one folder. They appear under their names when the run ends. A run that
+/// was resumed into the folder it came from keeps what was written there up to the step it goes on from.
+class RunFolder {
+ public:
+  /// @param camera  text of the scene's camera, for pictures made later  @throws InputError where the folder cannot be written in
+  RunFolder(std::filesystem::path folder, const World& world, const State& start, const std::string& camera);
+  void add_step(const cosim::StepRow& row);
+  void add_state(const State& state, std::vector<Real> contact_force);
+  /// Gives all files their names, and writes the snapshot.
+  void commit(const State& state);
+  const std::filesystem::path& path() const { return folder_; }
+  std::filesystem::path operator/(const std::string& name) const { return folder_ / name; }
+
+ private:
+  void keep_earlier_steps(const std::string& header, int step);
+  void keep_earlier_states(const cosim::RecordedMesh& mesh, int step);
+  std::filesystem::path folder_;
+  const World* world_;
+  cosim::TextFile steps_;
+  cosim::StateWriter states_;
+  int last_recorded_ = -1;  // step
+};
+}  // namespace tape::tapesim

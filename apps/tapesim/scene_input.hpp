@@ -1,0 +1,21 @@
+#pragma once
+#include "apps/tapesim/commands.hpp"
+#include "apps/tapesim/pictures.hpp"
+#include "cosim/run/load_run.hpp"
+
+namespace tape::tapesim {
+/// All of a scene file: the simulation, and the pictures of it.
+struct SceneInput {
+  cosim::RunInput run;
+  PictureParams pictures;
+};
+/// @throws InputError also for keys that nobody knows
+SceneInput load_scene(const SceneArguments& arguments);
+/// The same, with the world that it describes.
+struct LoadedWorld {
+  SceneInput input;
+  World world;
+};
+/// @throws InputError also for figures that do not fit the scene, and for an initial state that cannot be
+LoadedWorld load_world(const SceneArguments& arguments);
+}  // namespace tape::tapesim

@@ -1,0 +1,163 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "apps/report/plot.hpp"
+#include "apps/report/table.hpp"
+#include "apps/tapesim/interrupt.hpp"
+#include "apps/tapesim/progress.hpp"
+#include "apps/tapesim/scene_input.hpp"
+#include "apps/tapesim/study_error.hpp"
+#include "cosim/run/new_file.hpp"
+#include "cosim/run/summary.hpp"
+#include "tape/core/execution.hpp"
+
+namespace tape::tapesim {
+namespace {
+constexpr Real kNone = std::numeric_limits<Real>::quiet_NaN();
+
+/// One combination of a study's grid.
+struct StudyRun {
+  std::vector<std::string> values;
+  Real seconds = 0, error = kNone;
+  Real newton = 0;  ///< iterations per step
+  int unmet = 0;    ///< conditions
+  bool pareto = false;
+  std::string failure{};
+  Measured measured{};
+
+  bool measurable() const { return failure.empty(); }
+};
+
+/// Runs a combination. A numerical failure is a result; bad input is an error of the study.
+StudyRun run_one(const Study& study, const std::vector<std::string>& values) {
+  StudyRun result{.values = values};
+  SceneArguments arguments{study.scene.string(), study.overrides};
+  for (std::size_t k = 0; k < values.size(); ++k) arguments.overrides.push_back(study.grid[k].first + "=" + values[k]);
+  const LoadedWorld loaded = load_world(arguments);
+  const std::unique_ptr<Stepper> stepper = make_stepper(Backend::cpu, loaded.world);
+  State state = State::start(loaded.world);
+  cosim::RunOptions options{.record = loaded.input.run.record};
+  options.stop_asked = interrupted;
+  const cosim::RunLog log = simulate(loaded.world, *stepper, state, options);
+  const cosim::RunSummary summary = summarize(loaded.world, log, {});
+  result.seconds = log.wall;
+  result.newton = summary.newton_mean;
+  for (const cosim::Condition& condition : summary.conditions) result.unmet += !condition.met;
+  result.failure = log.interrupted ? "interrupted" : summary.failure;
+  if (result.measurable()) result.measured = measure(study.reference, loaded.world, log);
+  return result;
+}
+
+void find_errors(const Study& study, std::vector<StudyRun>& runs) {
+  const bool finest = study.reference.kind == Reference::Kind::finest;
+  if (finest && !runs.back().measurable()) throw InputError("study " + study.name + ": the finest run failed: " + runs.back().failure);
+  std::vector<Real> seconds, errors;
+  for (StudyRun& run : runs) {
+    if (run.measurable() && &run != (finest ? &runs.back() : nullptr))
+      run.error = finest ? distance(study.reference, run.measured, runs.back().measured) : run.measured.error;
+    seconds.push_back(run.seconds);
+    errors.push_back(run.error);
+  }
+  const std::vector<bool> front = report::pareto_front(seconds, errors);
+  for (std::size_t i = 0; i < runs.size(); ++i) runs[i].pareto = front[i];
+}
+
+report::Table make_table(const Study& study, const std::vector<StudyRun>& runs, std::string (*number)(double)) {
+  report::Table table;
+  for (const auto& [key, values] : study.grid) table.columns.push_back(key);
+  for (const char* column : {"error", "seconds", "newton_per_step", "conditions_not_met", "pareto", "note"})
+    table.columns.push_back(column);
+  for (const StudyRun& run : runs) {
+    std::vector<std::string> row = run.values;
+    const std::string note = run.failure.empty() && std::isnan(run.error) ? "finest" : run.failure;
+    for (const std::string& cell : {std::isnan(run.error) ? "" : number(run.error), number(run.seconds), number(run.newton),
+                                    std::to_string(run.unmet), std::string(run.pareto ? "*" : ""), note})
+      row.push_back(cell);
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+std::string label(const Study& study, const StudyRun& run) {
+  std::string text;
+  for (std::size_t k = 0; k < run.values.size(); ++k) {
+    const std::string& key = study.grid[k].first;
+    text += (k ? ", " : "") + key.substr(key.rfind('.') + 1) + " " + run.values[k];
+  }
+  return text;
+}
+
+/// One sentence: what accuracy costs here.
+std::string conclusion(const Study& study, const std::vector<StudyRun>& runs) {
+  const StudyRun *fastest = nullptr, *best = nullptr;
+  for (const StudyRun& run : runs) {
+    if (!run.pareto) continue;
+    if (!fastest || run.seconds < fastest->seconds) fastest = &run;
+    if (!best || run.error < best->error) best = &run;
+  }
+  if (!fastest) return "No run could be measured.";
+  if (fastest == best)
+    return fmt::format("The fastest run is also the most accurate: error {} in {} s ({}).", report::rounded(best->error),
+                       report::rounded(best->seconds), label(study, *best));
+  return fmt::format("An error of {} costs {} s ({}); {} times the time brings it down to {} ({}).", report::rounded(fastest->error),
+                     report::rounded(fastest->seconds), label(study, *fastest), report::rounded(best->seconds / fastest->seconds),
+                     report::rounded(best->error), label(study, *best));
+}
+
+void write_files(const Study& study, const std::vector<StudyRun>& runs, const std::filesystem::path& folder) {
+  cosim::write_text(folder / "study.csv", report::to_csv(make_table(study, runs, tape::to_text)));
+  report::Plot plot{"study " + study.name, "time [s]", error_label(study.reference), {}};
+  for (const StudyRun& run : runs)
+    if (run.measurable() && !std::isnan(run.error)) plot.points.push_back({run.seconds, run.error, label(study, run), run.pareto});
+  report::write_plot(plot, folder / "study");
+}
+
+int run_study(const std::string& file, const std::vector<std::string>& overrides, const std::string& out, int thread_count) {
+  set_threads(thread_count);
+  const Study study = load_study(file, overrides);
+  const std::filesystem::path folder = out.empty() ? "out/" + study.name : out;
+  cosim::make_folder(folder);
+  remember_interrupts();
+  std::vector<StudyRun> runs;
+  const std::vector<std::vector<std::string>> combinations = study.combinations();
+  {
+    Progress progress("study " + study.name, static_cast<int>(combinations.size()));
+    for (const std::vector<std::string>& values : combinations) {
+      runs.push_back(run_one(study, values));
+      if (interrupted()) break;
+      progress.update(static_cast<int>(runs.size()), label(study, runs.back()));
+    }
+  }
+  if (interrupted() && study.reference.kind == Reference::Kind::finest) return kInterrupted;
+  find_errors(study, runs);
+  fmt::print("{}\n{}\n{}\n", error_label(study.reference), report::to_text(make_table(study, runs, report::rounded)),
+             conclusion(study, runs));
+  if (interrupted()) return kInterrupted;
+  write_files(study, runs, folder);
+  fmt::print("{}\n", (folder / "study.{csv,png,svg}").string());
+  for (const StudyRun& run : runs)
+    if (!run.measurable()) return kNumericalFailure;
+  return kDone;
+}
+
+struct StudyArguments {
+  std::string file, out;
+  std::vector<std::string> overrides;
+  int threads = 0;
+};
+}  // namespace
+
+void add_study(CLI::App& app, Action& chosen) {
+  auto arguments = std::make_shared<StudyArguments>();
+  CLI::App* command = app.add_subcommand("study", "runs one scene over a grid of settings: error against time");
+  command->add_option("STUDY", arguments->file, "study file (YAML)")->required();
+  command->add_option("--out", arguments->out, "folder for study.csv, study.png, study.svg (default: out/<study>)");
+  command->add_option("--set", arguments->overrides, "set a key of the scene in every run; may be repeated")->allow_extra_args(false);
+  command->add_option("--threads", arguments->threads, "threads of the CPU back end; 0: all cores")->check(CLI::Range(0, 1024));
+  command->callback(
+      [=, &chosen] { chosen = [=] { return run_study(arguments->file, arguments->overrides, arguments->out, arguments->threads); }; });
+}
+}  // namespace tape::tapesim

@@ -1,0 +1,114 @@
+#include "apps/tapesim/study_error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "apps/report/closed_forms.hpp"
+
+namespace tape::tapesim {
+namespace {
+constexpr Real kSame = 1e-9;  // [m] places along the strip closer than this are one row
+
+/// Where the first strip is clamped. A bending hinge in the last held row belongs half to the free part and half to the held one, so
+/// that the strip bends as one clamped half a cell before that row.
+struct Clamp {
+  Real last_row;  ///< [m] along the strip
+  Real cell;      ///< [m]
+};
+Clamp find_clamp(const World& world) {
+  std::set<Real> held;
+  if (!world.assembly.strips.empty())
+    for (const Assembly::GripPart& grip : world.assembly.grips)
+      for (int v : grip.vertices)
+        if (v < world.assembly.strips[0].vertices) held.insert(world.assembly.rest[static_cast<std::size_t>(v)].x());
+  const Real last = held.empty() ? 0 : *held.rbegin();
+  const auto before = std::find_if(held.rbegin(), held.rend(), [&](Real along) { return along < last - kSame; });
+  if (before == held.rend()) throw InputError("heavy_elastica: the first strip needs a grip on two rows or more at its root");
+  return {last, last - *before};
+}
+
+Vec3 row_centre(const World& world, const State& state, Real along) {
+  Vec3 sum = Vec3::Zero();
+  int n = 0;
+  for (int v = 0; v < world.assembly.strips[0].vertices; ++v)
+    if (std::abs(world.assembly.rest[static_cast<std::size_t>(v)].x() - along) < kSame) {
+      sum += state.x[static_cast<std::size_t>(v)];
+      ++n;
+    }
+  return sum / n;
+}
+
+Real elastica_error(const World& world, const cosim::RunLog& log) {
+  const Scene& scene = world.setup.scene;
+  const Clamp clamp = find_clamp(world);
+  const Film& film = scene.films[static_cast<std::size_t>(scene.strips[0].film)];
+  const Real length = scene.strips[0].mesh.length - clamp.last_row + clamp.cell / 2;
+  const Real stiffness = film.plate_stiffness() * (1 - film.poisson * film.poisson);  // [N m] per width, of a beam
+  const Real weight = film.density * film.thickness * scene.gravity.norm();           // [N/m^2]
+  const report::ElasticaTip exact = report::heavy_elastica(weight * length * length * length / stiffness);
+  const Vec3 root = row_centre(world, log.end, clamp.last_row), tip = row_centre(world, log.end, scene.strips[0].mesh.length);
+  const Real drop = (root.z() - tip.z()) / length, reach = ((tip - root).head<2>().norm() + clamp.cell / 2) / length;
+  return std::max(std::abs(drop - exact.drop), std::abs(reach - exact.reach));
+}
+
+Real capstan_error(const World& world, const cosim::RunLog& log, Real angle) {
+  const Scene& scene = world.setup.scene;
+  if (scene.strips.empty() || scene.bodies.empty() || scene.grips.size() < 2)
+    throw InputError("capstan: the scene needs a strip, a body and two grips");
+  const Real mu = scene.mu(scene.strips[0].material, scene.bodies[0].material);
+  const Real ratio = cosim::measure_figures({"capstan_ratio"}, world, log).at(0).second;
+  return std::abs(ratio / report::capstan_ratio(mu, angle) - 1);
+}
+
+Real figure_value(const std::string& key, const World& world, const cosim::RunLog& log) {
+  std::vector<std::string> names;
+  for (const cosim::Figure& figure : cosim::all_figures()) {
+    if (figure.name == "tip" && world.assembly.strips.empty()) continue;
+    if (figure.name == "capstan_ratio" && world.setup.scene.grips.size() < 2) continue;
+    names.emplace_back(figure.name);
+  }
+  std::string known;
+  for (const auto& [name, value] : cosim::measure_figures(names, world, log)) {
+    if (name == key) return value;
+    known += (known.empty() ? "" : ", ") + name;
+  }
+  throw InputError("measure = " + key + ": the scene has no such figure; it has state, " + known);
+}
+}  // namespace
+
+Measured measure(const Reference& reference, const World& world, const cosim::RunLog& log) {
+  Measured measured;
+  if (reference.kind == Reference::Kind::heavy_elastica) {
+    measured.error = elastica_error(world, log);
+  } else if (reference.kind == Reference::Kind::capstan) {
+    measured.error = capstan_error(world, log, reference.angle);
+  } else if (reference.measure == "state") {
+    if (world.assembly.strips.empty()) throw InputError("measure = state: the scene has no strip");
+    measured.middle_line = cosim::middle_line(world, log.end, 101);
+  } else {
+    measured.value = figure_value(reference.measure, world, log);
+  }
+  return measured;
+}
+
+Real distance(const Reference& reference, const Measured& run, const Measured& finest) {
+  if (reference.measure != "state") return std::abs(run.value - finest.value);
+  Real most = 0;
+  for (std::size_t i = 0; i < run.middle_line.size(); ++i) most = std::max(most, (run.middle_line[i] - finest.middle_line[i]).norm());
+  return most;
+}
+
+std::string error_label(const Reference& reference) {
+  switch (reference.kind) {
+    case Reference::Kind::heavy_elastica:
+      return "error of tip drop and reach / length, against the exact curve";
+    case Reference::Kind::capstan:
+      return "relative error of the pull ratio, against exp(mu angle)";
+    case Reference::Kind::finest:
+      break;
+  }
+  return reference.measure == "state" ? "largest distance of middle lines from the finest run [m]"
+                                      : "difference of " + reference.measure + " from the finest run";
+}
+}  // namespace tape::tapesim

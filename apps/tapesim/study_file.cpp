@@ -1,0 +1,61 @@
+#include "apps/tapesim/study_file.hpp"
+
+#include <numbers>
+
+#include "cosim/scene/scene_file.hpp"
+
+namespace tape::tapesim {
+namespace {
+constexpr std::size_t kMostRuns = 1000;
+
+Reference read_reference(const cosim::SceneFile& file) {
+  const cosim::Reader against = file["against"], form = against["closed_form"], finest = against["finest"];
+  Reference reference;
+  if (form.exists() == finest.exists()) against.fail("needs either closed_form: NAME or finest: true");
+  if (finest) {
+    if (!finest.flag()) finest.fail("can only be true");
+    reference.measure = file["measure"].text_or("state");
+    return reference;
+  }
+  reference.kind = static_cast<Reference::Kind>(cosim::choose(form, {"heavy_elastica", "capstan"}));
+  if (reference.kind == Reference::Kind::capstan)
+    reference.angle = against["angle_deg"].number(Range::above(0, 3600), "deg") * std::numbers::pi / 180;
+  return reference;
+}
+}  // namespace
+
+std::vector<std::vector<std::string>> Study::combinations() const {
+  std::vector<std::vector<std::string>> all = {{}};
+  for (const auto& [key, values] : grid) {
+    std::vector<std::vector<std::string>> longer;
+    for (const auto& start : all)
+      for (const std::string& value : values) {
+        longer.push_back(start);
+        longer.back().push_back(value);
+      }
+    all = std::move(longer);
+  }
+  return all;
+}
+
+Study load_study(const std::filesystem::path& path, const std::vector<std::string>& more_overrides) {
+  const cosim::SceneFile file = cosim::SceneFile::load(path);
+  Study study;
+  study.name = file["study"].text_or(path.stem().string());
+  const cosim::Reader scene = file["scene"];
+  study.scene = cosim::find_file(path, "scenes", scene.text());
+  if (study.scene.empty()) scene.fail("no such scene beside the study, above it, or in data/scenes");
+  const cosim::Reader fixed = file["set"], grid = file["grid"];
+  for (const std::string& key : fixed.keys()) study.overrides.push_back(key + "=" + fixed[key].text());
+  study.overrides.insert(study.overrides.end(), more_overrides.begin(), more_overrides.end());
+  for (const std::string& key : grid.keys()) {
+    study.grid.emplace_back(key, grid[key].texts());
+    if (study.grid.back().second.empty()) grid[key].fail("needs at least one value");
+  }
+  if (study.grid.empty()) grid.fail("needs at least one key, such as solver.velocity_tol: [1e-2, 1e-3]");
+  if (study.combinations().size() > kMostRuns) grid.fail("asks for more than " + std::to_string(kMostRuns) + " runs");
+  study.reference = read_reference(file);
+  file.require_all_used();
+  return study;
+}
+}  // namespace tape::tapesim

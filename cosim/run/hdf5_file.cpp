@@ -1,0 +1,196 @@
+#include "cosim/run/hdf5_file.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <functional>
+#include <numeric>
+#include <utility>
+
+#include "tape/core/error.hpp"
+
+namespace cosim {
+namespace {
+/// Closes an object of the library when it goes out of scope; converts to its id.
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  ~Handle() {
+    if (id_ >= 0) close_(id_);
+  }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  operator hid_t() const { return id_; }
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+/// The library prints its own messages unless told otherwise.
+void be_quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+hsize_t product(const Shape& shape) { return std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>()); }
+
+/// Layout of a growing array: chunks of one row, packed.
+hid_t row_layout(const Shape& row_shape) {
+  const hid_t layout = H5Pcreate(H5P_DATASET_CREATE);
+  Shape chunk = row_shape;
+  chunk.insert(chunk.begin(), 1);
+  if (product(chunk) < 64) chunk[0] = 256;
+  H5Pset_chunk(layout, static_cast<int>(chunk.size()), chunk.data());
+  if (product(row_shape) >= 64) {
+    H5Pset_shuffle(layout);
+    H5Pset_deflate(layout, 1);
+  }
+  return layout;
+}
+}  // namespace
+
+Hdf5Writer::Hdf5Writer(const std::filesystem::path& name) : file_(name) {
+  be_quiet();
+  errno = 0;
+  id_ = H5Fcreate(file_.temporary().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  require(id_ >= 0);
+}
+
+Hdf5Writer::~Hdf5Writer() {
+  if (id_ >= 0) H5Fclose(id_);
+}
+
+void Hdf5Writer::require(bool success) const {
+  if (!success)
+    throw tape::InputError("cannot write " + file_.name().string() + ": " + (errno ? std::strerror(errno) : "the HDF5 library refuses"));
+}
+
+void Hdf5Writer::write(const std::string& array, const void* values, hid_t type, const Shape& shape) {
+  errno = 0;
+  const Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
+  const Handle data(H5Dcreate2(id_, array.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+  require(data >= 0);
+  if (product(shape) > 0) require(H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
+}
+
+void Hdf5Writer::append(const std::string& array, const void* row, hid_t type, const Shape& row_shape) {
+  errno = 0;
+  Shape size = row_shape, start(row_shape.size() + 1, 0);
+  if (H5Lexists(id_, array.c_str(), H5P_DEFAULT) <= 0) {
+    Shape unlimited = row_shape;
+    unlimited.insert(unlimited.begin(), H5S_UNLIMITED);
+    size.insert(size.begin(), 0);
+    const Handle space(H5Screate_simple(static_cast<int>(size.size()), size.data(), unlimited.data()), H5Sclose);
+    const Handle layout(row_layout(row_shape), H5Pclose);
+    const Handle data(H5Dcreate2(id_, array.c_str(), type, space, H5P_DEFAULT, layout, H5P_DEFAULT), H5Dclose);
+    require(data >= 0);
+    size = row_shape;
+  }
+  const Handle data(H5Dopen2(id_, array.c_str(), H5P_DEFAULT), H5Dclose);
+  size.insert(size.begin(), 0);
+  {
+    const Handle space(H5Dget_space(data), H5Sclose);
+    H5Sget_simple_extent_dims(space, size.data(), nullptr);
+  }
+  start[0] = size[0]++;
+  require(H5Dset_extent(data, size.data()) >= 0);
+  size[0] = 1;
+  const Handle space(H5Dget_space(data), H5Sclose), memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
+  H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr);
+  require(H5Dwrite(data, type, memory, space, H5P_DEFAULT, row) >= 0);
+}
+
+void Hdf5Writer::write(const std::string& array, const std::vector<double>& values, const Shape& shape) {
+  TAPE_CHECK(values.size() == product(shape));
+  write(array, values.data(), H5T_NATIVE_DOUBLE, shape);
+}
+void Hdf5Writer::write(const std::string& array, const std::vector<int>& values, const Shape& shape) {
+  TAPE_CHECK(values.size() == product(shape));
+  write(array, values.data(), H5T_NATIVE_INT, shape);
+}
+void Hdf5Writer::append(const std::string& array, const std::vector<double>& row, const Shape& row_shape) {
+  TAPE_CHECK(row.size() == product(row_shape));
+  append(array, row.data(), H5T_NATIVE_DOUBLE, row_shape);
+}
+void Hdf5Writer::append(const std::string& array, const std::vector<float>& row, const Shape& row_shape) {
+  TAPE_CHECK(row.size() == product(row_shape));
+  append(array, row.data(), H5T_NATIVE_FLOAT, row_shape);
+}
+void Hdf5Writer::append(const std::string& array, const std::vector<int>& row, const Shape& row_shape) {
+  TAPE_CHECK(row.size() == product(row_shape));
+  append(array, row.data(), H5T_NATIVE_INT, row_shape);
+}
+
+void Hdf5Writer::write_text(const std::string& attribute, const std::string& text) {
+  errno = 0;
+  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate(H5S_SCALAR), H5Sclose);
+  H5Tset_size(type, text.size() + 1);
+  H5Tset_cset(type, H5T_CSET_UTF8);
+  const Handle written(H5Acreate2(id_, attribute.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  require(written >= 0 && H5Awrite(written, type, text.c_str()) >= 0);
+}
+
+void Hdf5Writer::flush() {
+  errno = 0;
+  require(H5Fflush(id_, H5F_SCOPE_LOCAL) >= 0);
+}
+
+void Hdf5Writer::commit() {
+  flush();
+  const hid_t id = std::exchange(id_, -1);
+  require(H5Fclose(id) >= 0);
+  file_.commit();
+}
+
+Hdf5Reader::Hdf5Reader(const std::filesystem::path& name) : name_(name.string()) {
+  be_quiet();
+  if (!std::filesystem::exists(name)) throw tape::InputError(name_ + ": there is no such file");
+  id_ = H5Fopen(name.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (id_ < 0) throw tape::InputError(name_ + ": not an HDF5 file, or damaged");
+}
+
+Hdf5Reader::~Hdf5Reader() {
+  if (id_ >= 0) H5Fclose(id_);
+}
+
+void Hdf5Reader::fail(const std::string& what) const { throw tape::InputError(name_ + ": " + what + " is missing or damaged"); }
+
+Shape Hdf5Reader::shape(const std::string& array) const {
+  const Handle data(H5Dopen2(id_, array.c_str(), H5P_DEFAULT), H5Dclose);
+  if (data < 0) fail(array);
+  const Handle space(H5Dget_space(data), H5Sclose);
+  const int rank = H5Sget_simple_extent_ndims(space);
+  if (rank < 1) fail(array);
+  Shape shape(static_cast<std::size_t>(rank));
+  H5Sget_simple_extent_dims(space, shape.data(), nullptr);
+  return shape;
+}
+
+template <class T>
+std::vector<T> Hdf5Reader::read(const std::string& array, hid_t type, int row) const {
+  Shape size = shape(array), start(size.size(), 0);
+  const Handle data(H5Dopen2(id_, array.c_str(), H5P_DEFAULT), H5Dclose), space(H5Dget_space(data), H5Sclose);
+  if (row >= 0) {
+    if (static_cast<hsize_t>(row) >= size[0]) fail(array + "[" + std::to_string(row) + "]");
+    start[0] = static_cast<hsize_t>(row);
+    size[0] = 1;
+  }
+  H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr);
+  const Handle memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
+  std::vector<T> values(product(size));
+  if (!values.empty() && H5Dread(data, type, memory, space, H5P_DEFAULT, values.data()) < 0) fail(array);
+  return values;
+}
+
+std::vector<double> Hdf5Reader::read_reals(const std::string& array) const { return read<double>(array, H5T_NATIVE_DOUBLE, -1); }
+std::vector<int> Hdf5Reader::read_ints(const std::string& array) const { return read<int>(array, H5T_NATIVE_INT, -1); }
+std::vector<double> Hdf5Reader::read_row(const std::string& array, int index) const {
+  return read<double>(array, H5T_NATIVE_DOUBLE, index);
+}
+
+std::string Hdf5Reader::read_text(const std::string& attribute) const {
+  const Handle read(H5Aopen(id_, attribute.c_str(), H5P_DEFAULT), H5Aclose);
+  if (read < 0) fail(attribute);
+  const Handle type(H5Aget_type(read), H5Tclose);
+  std::string text(H5Tget_size(type), '\0');
+  if (H5Aread(read, type, text.data()) < 0) fail(attribute);
+  return text.c_str();
+}
+}  // namespace cosim

@@ -1,0 +1,22 @@
+#include "cosim/run/load_run.hpp"
+
+#include "cosim/scene/read_scene.hpp"
+
+namespace cosim {
+RunInput load_run(const std::filesystem::path& scene, const std::vector<std::string>& overrides) {
+  RunInput input{.file = SceneFile::load(scene, overrides), .setup = {}, .record = {}, .figures = {}};
+  const SceneFile& file = input.file;
+  input.setup.scene = read_scene(file);
+  std::vector<std::string> effects;
+  for_each_effect([&]<class T>(std::type_identity<T>) {
+    effects.emplace_back(T::name);
+    file.read(T::name, params<T>(input.setup.effects));
+  });
+  for (const auto& [name, chosen] : file.switches("effects", effects)) input.setup.forced[name] = chosen.on;
+  file.read("solver", input.setup.newton);
+  file.read("solver", input.setup.linear);
+  file.read("record", input.record);
+  if (const Reader figures = file["record"]["figures"]) input.figures = figures.texts();
+  return input;
+}
+}  // namespace cosim

@@ -1,0 +1,21 @@
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+#include "cosim/run/run_log.hpp"
+#include "cosim/scene/scene_file.hpp"
+
+namespace cosim {
+/// What a scene file asks for, as far as it concerns the simulation.
+struct RunInput {
+  SceneFile file;
+  Setup setup;
+  RecordParams record;
+  std::vector<std::string> figures;
+};
+/// Reads the scene, the settings of every effect and of the solver, `effects` (switches) and `record`. Whoever reads more
+/// sections does so from `file`, then calls its `require_all_used`.
+/// @throws InputError "file:line: key = value: reason"
+RunInput load_run(const std::filesystem::path& scene, const std::vector<std::string>& overrides);
+}  // namespace cosim

@@ -1,0 +1,69 @@
+#include "cosim/run/run_log.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "tape/contact/intersection.hpp"
+
+namespace cosim {
+namespace {
+/// Says when the next state is due at a rate [1/s].
+class RecordClock {
+ public:
+  RecordClock(Real rate, Real start) : rate_(rate), ticks_(count(start)) {}
+  bool due(Real time) {
+    const Real now = count(time);
+    return now > std::exchange(ticks_, now);
+  }
+
+ private:
+  Real count(Real time) const { return std::floor(time * rate_ + 1e-6); }
+  Real rate_, ticks_;
+};
+
+void record(RunLog& log, const World& world, const State& state, const RunOptions& options) {
+  log.checked_states += 1;
+  log.intersections += find_intersections(world.surface, vertex_positions(world, state)).count;
+  if (options.on_record) options.on_record(state);
+}
+}  // namespace
+
+int planned_steps(const Scene& scene) { return static_cast<int>(std::lround(scene.time.duration / scene.time.dt)); }
+
+RunLog simulate(const World& world, Stepper& stepper, State& state, const RunOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  const int planned = planned_steps(world.setup.scene);
+  const int last = options.max_steps < 0 ? planned : std::min(planned, state.step + options.max_steps);
+  RunLog log{.start = state};
+  EnergyLedger ledger(world);
+  RecordClock clock(options.record.rate, state.time);
+  record(log, world, state, options);
+  int recorded = state.step;
+  while (state.step < last && log.failure.empty()) {
+    if (options.stop_asked && options.stop_asked()) {
+      log.interrupted = true;
+      break;
+    }
+    ledger.before(state, world.setup.scene.time.dt);
+    StepReport report = stepper.step(state);
+    if (!report.ok) {
+      log.failure = report.failure;
+      log.failed_step = state.step + 1;
+      break;
+    }
+    const EnergyLedger::Entry energy = ledger.after(state, report);
+    log.rows.push_back({state.step, state.time, std::move(report), energy});
+    if (options.on_step) options.on_step(state, log.rows.back());
+    if (clock.due(state.time)) {
+      record(log, world, state, options);
+      recorded = state.step;
+    }
+  }
+  if (recorded != state.step) record(log, world, state, options);
+  log.end = state;
+  log.wall = std::chrono::duration<Real>(std::chrono::steady_clock::now() - begin).count();
+  return log;
+}
+}  // namespace cosim

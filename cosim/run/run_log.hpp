@@ -1,0 +1,52 @@
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "cosim/run/energy_ledger.hpp"
+#include "tape/step/stepper.hpp"
+
+namespace cosim {
+/// One step of a run.
+struct StepRow {
+  int step = 0;
+  Real time = 0;  ///< [s] at its end
+  StepReport report;
+  EnergyLedger::Entry energy;
+};
+
+/// Everything about a run that a report, its figures and its conditions are computed from.
+struct RunLog {
+  State start{}, end{};
+  std::vector<StepRow> rows{};  ///< of the completed steps
+  bool interrupted = false;
+  std::string failure{};   ///< why the run stopped before its time; empty if it did not
+  int failed_step = -1;    ///< the step that could not be made
+  int checked_states = 0;  ///< states that were searched for intersections
+  int intersections = 0;   ///< found in them
+  Real wall = 0;           ///< [s]
+};
+
+/// What a scene's `record:` section says.
+struct RecordParams {
+  Real rate = 30;
+  template <class F>
+  void fields(F&& f) {
+    f("rate", rate, "1/s", Range::positive(), "recorded states per simulated second; a state is recorded at most once a step");
+  }
+};
+
+struct RunOptions {
+  int max_steps = -1;  ///< of this call; negative: until the duration of the scene
+  RecordParams record{};
+  std::function<bool()> stop_asked{};                           ///< asked before each step; may be empty
+  std::function<void(const State&, const StepRow&)> on_step{};  ///< after each completed step; may be empty
+  std::function<void(const State&)> on_record{};                ///< at the start, at the rate asked for, and at the end; may be empty
+};
+
+/// Steps that a scene asks for: duration / dt, rounded.
+int planned_steps(const Scene& scene);
+
+/// Runs a state to the end of the scene, or until something stops it.
+RunLog simulate(const World& world, Stepper& stepper, State& state, const RunOptions& options);
+}  // namespace cosim

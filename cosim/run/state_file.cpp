@@ -1,0 +1,165 @@
+#include "cosim/run/state_file.hpp"
+
+#include <sstream>
+
+#include "tape/core/error.hpp"
+
+namespace cosim {
+namespace {
+constexpr const char* kFormat = "tape states 1";
+
+/// Matrices of equal size, one after the other.
+template <class T, class M>
+std::vector<T> flat(const std::vector<M>& matrices) {
+  std::vector<T> out;
+  for (const M& m : matrices) out.insert(out.end(), m.data(), m.data() + m.size());
+  return out;
+}
+template <class M, class T>
+std::vector<M> unflat(const std::vector<T>& values) {
+  std::vector<M> out(values.size() / static_cast<std::size_t>(M::SizeAtCompileTime));
+  std::size_t at = 0;
+  for (M& m : out)
+    for (Eigen::Index c = 0; c < m.size(); ++c) m.data()[c] = values[at++];
+  return out;
+}
+
+std::string lines(const std::vector<RecordedObject>& objects, std::string RecordedObject::*member) {
+  std::string text;
+  for (const RecordedObject& object : objects) text += object.*member + '\n';
+  return text;
+}
+
+std::vector<RecordedObject> read_objects(const Hdf5Reader& file) {
+  const std::vector<int> numbers = file.read_ints("objects");
+  std::istringstream names(file.read_text("names")), materials(file.read_text("materials"));
+  std::vector<RecordedObject> objects(numbers.size() / 3);
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    RecordedObject& object = objects[i];
+    std::getline(names, object.name);
+    std::getline(materials, object.material);
+    object.first_triangle = numbers[3 * i];
+    object.triangles = numbers[3 * i + 1];
+    object.strip = numbers[3 * i + 2] != 0;
+  }
+  return objects;
+}
+
+/// What a picture relies on.
+bool consistent(const RecordedMesh& mesh) {
+  const auto nv = static_cast<int>(mesh.body.size());
+  bool ok = mesh.rest.size() == mesh.body.size() && mesh.local.size() == mesh.body.size() && mesh.strip_vertices >= 0 &&
+            mesh.strip_vertices <= nv;
+  for (const Index3& t : mesh.triangles) ok = ok && t.minCoeff() >= 0 && t.maxCoeff() < nv;
+  for (const RecordedObject& o : mesh.objects)
+    ok = ok && o.first_triangle >= 0 && o.triangles >= 0 && o.first_triangle + o.triangles <= static_cast<int>(mesh.triangles.size());
+  return ok;
+}
+}  // namespace
+
+RecordedMesh RecordedMesh::of(const World& world, std::string camera) {
+  const Assembly& a = world.assembly;
+  const Scene& scene = world.setup.scene;
+  const auto nv = static_cast<std::size_t>(a.surface_vertices);
+  RecordedMesh mesh{
+      .scene = scene.name, .objects = {}, .triangles = a.triangles, .rest = {}, .body = {}, .local = {}, .camera = std::move(camera)};
+  const auto material = [&](int m) { return scene.materials[static_cast<std::size_t>(m)].name; };
+  for (std::size_t s = 0; s < a.strips.size(); ++s) {
+    mesh.objects.push_back(
+        {scene.strips[s].name, material(scene.strips[s].material), a.strips[s].first_triangle, a.strips[s].triangles, true});
+    mesh.strip_vertices += a.strips[s].vertices;
+  }
+  for (std::size_t b = 0; b < a.bodies.size(); ++b)
+    mesh.objects.push_back(
+        {scene.bodies[b].name, material(scene.bodies[b].material), a.bodies[b].first_triangle, a.bodies[b].triangles, false});
+  mesh.rest.assign(a.rest.begin(), a.rest.begin() + std::min<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(nv), std::ssize(a.rest)));
+  mesh.rest.resize(nv, Vec2::Zero());
+  mesh.local.assign(a.local.begin(), a.local.begin() + std::min<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(nv), std::ssize(a.local)));
+  mesh.local.resize(nv, Vec3::Zero());
+  mesh.body.assign(nv, -1);
+  for (std::size_t b = 0; b < a.bodies.size(); ++b)
+    for (int v = a.bodies[b].first_vertex; v < a.bodies[b].first_vertex + a.bodies[b].vertices; ++v)
+      mesh.body[static_cast<std::size_t>(v)] = static_cast<int>(b);
+  return mesh;
+}
+
+RecordedFrame RecordedFrame::of(const World& world, const State& state, std::vector<Real> contact_force) {
+  RecordedFrame frame{.step = state.step, .time = state.time, .x = state.x, .bodies = {}, .contact_force = std::move(contact_force)};
+  for (const BodyState& body : state.bodies) frame.bodies.push_back(body.pose);
+  frame.contact_force.resize(static_cast<std::size_t>(world.assembly.surface_vertices), 0);
+  return frame;
+}
+
+std::vector<Vec3> vertex_positions(const RecordedMesh& mesh, const RecordedFrame& frame) {
+  std::vector<Vec3> x = frame.x;
+  for (std::size_t v = x.size(); v < mesh.body.size(); ++v)
+    x.push_back(apply(frame.bodies[static_cast<std::size_t>(mesh.body[v])], mesh.local[v]));
+  return x;
+}
+
+StateWriter::StateWriter(const std::filesystem::path& name, const RecordedMesh& mesh) : file_(name) {
+  std::vector<int> objects;
+  for (const RecordedObject& o : mesh.objects) objects.insert(objects.end(), {o.first_triangle, o.triangles, o.strip ? 1 : 0});
+  const auto nv = static_cast<hsize_t>(mesh.body.size());
+  file_.write_text("format", kFormat);
+  file_.write_text("scene", mesh.scene);
+  file_.write_text("camera", mesh.camera);
+  file_.write_text("names", lines(mesh.objects, &RecordedObject::name));
+  file_.write_text("materials", lines(mesh.objects, &RecordedObject::material));
+  file_.write("objects", objects, {mesh.objects.size(), 3});
+  file_.write("triangles", flat<int>(mesh.triangles), {mesh.triangles.size(), 3});
+  file_.write("rest", flat<double>(mesh.rest), {nv, 2});
+  file_.write("body", mesh.body, {nv});
+  file_.write("local", flat<double>(mesh.local), {nv, 3});
+  file_.write("strip_vertices", std::vector<int>{mesh.strip_vertices}, {1});
+}
+
+void StateWriter::add(const RecordedFrame& frame) {
+  std::vector<double> poses;
+  for (const Pose& X : frame.bodies) {
+    const Mat3 rows = X.rotation.transpose();  // column-major storage of the transpose: row by row
+    poses.insert(poses.end(), rows.data(), rows.data() + 9);
+    poses.insert(poses.end(), X.position.data(), X.position.data() + 3);
+  }
+  file_.append("step", std::vector<int>{frame.step}, {1});
+  file_.append("time", std::vector<double>{frame.time}, {1});
+  if (!frame.x.empty()) file_.append("x", flat<double>(frame.x), {frame.x.size(), 3});
+  if (!poses.empty()) file_.append("pose", poses, {frame.bodies.size(), 12});
+  file_.append("contact_force", std::vector<float>(frame.contact_force.begin(), frame.contact_force.end()), {frame.contact_force.size()});
+  file_.flush();
+}
+
+StateReader::StateReader(const std::filesystem::path& name) : file_(name) {
+  if (file_.read_text("format") != kFormat) throw InputError(name.string() + ": not a recording of this version");
+  mesh_.scene = file_.read_text("scene");
+  mesh_.camera = file_.read_text("camera");
+  mesh_.objects = read_objects(file_);
+  mesh_.triangles = unflat<Index3>(file_.read_ints("triangles"));
+  mesh_.rest = unflat<Vec2>(file_.read_reals("rest"));
+  mesh_.local = unflat<Vec3>(file_.read_reals("local"));
+  mesh_.body = file_.read_ints("body");
+  mesh_.strip_vertices = file_.read_ints("strip_vertices").at(0);
+  frames_ = static_cast<int>(file_.shape("step")[0]);
+  if (!consistent(mesh_)) throw InputError(name.string() + ": damaged: its arrays do not fit together");
+}
+
+RecordedFrame StateReader::frame(int i) const {
+  RecordedFrame frame{.step = static_cast<int>(file_.read_row("step", i)[0]),
+                      .time = file_.read_row("time", i)[0],
+                      .x = {},
+                      .bodies = {},
+                      .contact_force = {}};
+  if (mesh_.strip_vertices > 0) frame.x = unflat<Vec3>(file_.read_row("x", i));
+  bool any_body = false;
+  for (const RecordedObject& object : mesh_.objects) any_body = any_body || !object.strip;
+  const std::vector<double> poses = any_body ? file_.read_row("pose", i) : std::vector<double>();
+  for (std::size_t p = 0; p + 12 <= poses.size(); p += 12) {
+    Pose X;
+    X.rotation = Eigen::Map<const Mat3>(poses.data() + p).transpose();
+    X.position = Eigen::Map<const Vec3>(poses.data() + p + 9);
+    frame.bodies.push_back(X);
+  }
+  frame.contact_force = file_.read_row("contact_force", i);
+  return frame;
+}
+}  // namespace cosim

@@ -1,0 +1,67 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "cosim/run/hdf5_file.hpp"
+#include "tape/step/world.hpp"
+
+namespace cosim {
+using namespace tape;
+/// A strip or a body in a recording.
+struct RecordedObject {
+  std::string name, material;
+  int first_triangle = 0, triangles = 0;
+  bool strip = false;
+};
+/// What a recording shows, constant over its frames.
+struct RecordedMesh {
+  std::string scene;
+  std::vector<RecordedObject> objects;
+  std::vector<Index3> triangles;
+  std::vector<Vec2> rest;   ///< [nv] m; zero on bodies
+  std::vector<int> body;    ///< [nv] body that carries the vertex, -1: a strip
+  std::vector<Vec3> local;  ///< [nv] m, in frame B; zero on strips
+  int strip_vertices = 0;   ///< the first ones
+  std::string camera;       ///< `camera` section of the scene, as text; may be empty
+
+  static RecordedMesh of(const World& world, std::string camera);
+};
+struct RecordedFrame {
+  int step = 0;
+  Real time = 0;                    ///< [s]
+  std::vector<Vec3> x;              ///< [strip vertices] m
+  std::vector<Pose> bodies;         ///< [bodies] X_WB
+  std::vector<Real> contact_force;  ///< [nv] N, kept to 7 digits
+
+  static RecordedFrame of(const World& world, const State& state, std::vector<Real> contact_force);
+};
+/// All vertices [nv] m of a frame.
+std::vector<Vec3> vertex_positions(const RecordedMesh& mesh, const RecordedFrame& frame);
+
+/// Writes state.h5. Arrays: triangles [nt,3], rest [nv,2] m, body [nv], local [nv,3] m, objects [n,3] (first triangle, triangles, 1 for
+/// a strip); and per frame: step, time [s], x [strip vertices,3] m, pose [bodies,12] (rotation row by row, position), contact_force [nv] N.
+class StateWriter {
+ public:
+  StateWriter(const std::filesystem::path& name, const RecordedMesh& mesh);
+  void add(const RecordedFrame& frame);
+  void commit() { file_.commit(); }
+
+ private:
+  Hdf5Writer file_;
+};
+
+class StateReader {
+ public:
+  /// @throws InputError if the file is missing or damaged
+  explicit StateReader(const std::filesystem::path& name);
+  const RecordedMesh& mesh() const { return mesh_; }
+  int frames() const { return frames_; }
+  RecordedFrame frame(int i) const;
+
+ private:
+  Hdf5Reader file_;
+  RecordedMesh mesh_;
+  int frames_ = 0;
+};
+}  // namespace cosim

@@ -1,0 +1,68 @@
+#include "apps/report/plot.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "tape/core/error.hpp"
+
+using namespace tape;
+using namespace tape::report;
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+namespace {
+std::string read(const fs::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
+const Plot kPlot{"a study",
+                 "time [s]",
+                 "error",
+                 {{1, 0.1, "it's coarse", true}, {10, 0.01, "fine", true}, {10, 0.2, "poor", false}, {0, 1, "cannot be shown", false}}};
+
+class PlotFile : public testing::Test {
+ protected:
+  PlotFile() { fs::create_directories(folder); }
+  ~PlotFile() override { fs::remove_all(folder); }
+  fs::path folder = fs::temp_directory_path() / ("plot_test_" + std::to_string(getpid()));
+};
+}  // namespace
+
+TEST(ParetoFront, HoldsWhatNothingElseBeatsInBothRespects) {
+  EXPECT_EQ(pareto_front({1, 2, 3, 4, 2}, {4, 3, 3, 1, 5}), (std::vector<bool>{true, true, false, true, false}));
+}
+TEST(ParetoFront, KeepsEqualPointsAndNeverOneThatIsNotFinite) {
+  EXPECT_EQ(pareto_front({1, 1, 0.1}, {1, 1, std::nan("")}), (std::vector<bool>{true, true, false}));
+}
+TEST_F(PlotFile, IsMadeAsPngAndSvgWithTheParetoFrontMarked) {
+  write_plot(kPlot, folder / "study");
+  EXPECT_EQ(read(folder / "study.png").substr(1, 3), "PNG");
+  const std::string svg = read(folder / "study.svg");
+  EXPECT_THAT(svg, HasSubstr("Pareto front"));
+  EXPECT_THAT(svg, HasSubstr("coarse"));
+  EXPECT_THAT(svg, testing::Not(HasSubstr("cannot be shown")));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 2);
+}
+TEST_F(PlotFile, WithoutGnuplotSaysSoAndLeavesNothing) {
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", "/nowhere", 1);
+  try {
+    write_plot(kPlot, folder / "study");
+    ADD_FAILURE() << "plotted without gnuplot";
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("gnuplot"));
+  }
+  setenv("PATH", path.c_str(), 1);
+  EXPECT_TRUE(fs::is_empty(folder));
+}
+TEST_F(PlotFile, WithoutAnyPointToShowIsRefused) {
+  EXPECT_THROW(write_plot({"none", "", "", {{0, 1, "", false}}}, folder / "study"), InputError);
+}

@@ -1,0 +1,127 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "tests/apps/tapesim/program.hpp"
+
+using namespace tape::test;
+using testing::ContainsRegex;
+using testing::HasSubstr;
+using testing::IsSupersetOf;
+using testing::Not;
+
+namespace {
+constexpr const char* kScene = R"(scene: small
+film: {from: vinyl_19mm, poisson: 0}
+time: {dt: 0.05, duration: 0.1}
+strip: {length: 0.04, cells_across: 2}
+script:
+  - {grip: tape.rows, rows: [0, 1], as: clamp, stiffness: 1.0e+4}
+effects: {gravity: off}
+)";
+constexpr const char* kStudy = R"(study: tiny
+scene: small.yaml
+set: {strip.length: 0.05}
+grid:
+  time.dt: [0.05, 0.025]
+  strip.cells_across: [1, 2]
+)";
+
+class Command : public testing::Test {
+ protected:
+  Folder folder;
+  std::string scene = folder.file("small.yaml", kScene);
+};
+using Explain = Command;
+using Check = Command;
+using Info = Command;
+using StudyCommand = Command;
+using Render = Command;
+
+/// The line of `text` that starts with `name` and a space.
+std::string line_of(const std::string& text, const std::string& name) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with(name + " ")) return line;
+  return "";
+}
+}  // namespace
+
+TEST_F(Explain, NamesEveryEffectAndStageOnOrOffWithTheLineThatAsks) {
+  const Outcome outcome = tapesim({"explain", scene, "--backend", "cpu"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(line_of(outcome.out, "membrane"), ContainsRegex("on .*small.yaml:4.*\\[cpu\\]$"));
+  EXPECT_THAT(line_of(outcome.out, "tether"), ContainsRegex("on .*small.yaml:[56].*\\[cpu\\]$"));
+  EXPECT_THAT(line_of(outcome.out, "gravity"), ContainsRegex("off .*effects.gravity .*small.yaml:7"));
+  EXPECT_THAT(line_of(outcome.out, "body_drive"), ContainsRegex(" off "));
+  for (const char* stage : {"broad_phase", "narrow_phase", "ccd", "assembly", "linear_solver", "line_search", "history", "reduction",
+                            "cutting", "sleeping", "cosim"})
+    EXPECT_THAT(line_of(outcome.out, stage), ContainsRegex(" on | off ")) << stage;
+}
+TEST_F(Check, SaysThatASceneIsSoundAndWritesNothing) {
+  const Outcome outcome = tapesim({"check", scene});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("sound"));
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"small.yaml"});
+}
+TEST_F(Info, TellsVersionBackEndsThreadsAndBuild) {
+  const Outcome outcome = tapesim({"info"});
+  ASSERT_EQ(outcome.exit_code, 0);
+  for (const char* part : {"tapesim 0.", "cuda", "threads: ", "build: "}) EXPECT_THAT(outcome.out, HasSubstr(part));
+}
+TEST_F(Info, ListsSettingsWithDefaultUnitRangeAndMeaningAsRunsHelpDoes) {
+  const std::string settings = tapesim({"info", "--settings"}).out;
+  EXPECT_THAT(line_of(settings, "time.dt"), ContainsRegex("0\\.01 +s +\\(0, 1\\] +time step"));
+  EXPECT_THAT(line_of(settings, "solver.stop"), HasSubstr("velocity, work"));
+  EXPECT_THAT(tapesim({"run", "--help"}).out, HasSubstr(line_of(settings, "time.dt")));
+}
+TEST_F(StudyCommand, AgainstAClosedFormPrintsATableAndLeavesCsvAndPlots) {
+  const std::string study = folder.file("study.yaml", std::string(kStudy) + "against: {closed_form: heavy_elastica}\n");
+  const Outcome outcome = tapesim({"study", study, "--out", (folder / "out").string()});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(folder.names("out"), testing::ElementsAre("study.csv", "study.png", "study.svg"));
+  std::istringstream csv(read(folder / "out" / "study.csv"));
+  std::string line;
+  std::getline(csv, line);
+  EXPECT_THAT(line, testing::StartsWith("time.dt,strip.cells_across,error,seconds"));
+  for (const char* start : {"0.05,1,", "0.05,2,", "0.025,1,", "0.025,2,"}) {
+    std::getline(csv, line);
+    EXPECT_THAT(line, testing::StartsWith(start));
+  }
+  EXPECT_THAT(outcome.out, HasSubstr("*"));
+}
+TEST_F(StudyCommand, AgainstTheFinestRunMeasuresStatesOnDifferentMeshes) {
+  const std::string study = folder.file("study.yaml", std::string(kStudy) + "against: {finest: true}\nmeasure: state\n");
+  const Outcome outcome = tapesim({"study", study, "--out", (folder / "out").string(), "--set", "effects.gravity=on"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(read(folder / "out" / "study.csv"), HasSubstr("finest"));
+}
+TEST_F(StudyCommand, AMistakeInTheStudyExitsWithTwo) {
+  for (const char* end : {"against: {closed_form: magic}\n", "against: {}\n", "against: {finest: true}\nmeasure: weight\n",
+                          "against: {finest: true}\ngird: 3\n", "against: {closed_form: capstan, angle_deg: 180}\n"}) {
+    const Outcome outcome = tapesim({"study", folder.file("study.yaml", std::string(kStudy) + end), "--out", (folder / "out").string()});
+    EXPECT_EQ(outcome.exit_code, 2) << end;
+    EXPECT_THAT(outcome.err, HasSubstr("tapesim: ")) << end;
+  }
+  EXPECT_EQ(tapesim({"study", (folder / "none.yaml").string()}).exit_code, 2);
+}
+TEST_F(Render, MakesStillsAndAVideoFromAnyCameraAndRefusesWhatIsNotThere) {
+  ASSERT_EQ(tapesim({"run", scene, "--out", (folder / "a").string()}).exit_code, 0);
+  const std::string look = folder.file("look.yaml", "eye: [0.1, -0.2, 0.1]\ntarget: [0.02, 0, 0]\n");
+  const std::string pinhole =
+      folder.file("pinhole.yaml", "camera: {fx: 200, fy: 200, cx: 80, cy: 60, width: 160, height: 120, position: [0.02, 0, -0.2]}\n");
+  const std::vector<std::string> small = {"render", (folder / "a").string(), "--width", "160", "--height", "120"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), small.begin(), small.end());
+    return tapesim(more);
+  };
+  EXPECT_EQ(with({"--still", "0", "--still", "-1", "--color", "strain"}).exit_code, 0);
+  EXPECT_EQ(with({"--still", "1", "--camera", look, "--color", "contact_force"}).exit_code, 0);
+  EXPECT_EQ(with({"--camera", pinhole}).exit_code, 0);
+  EXPECT_THAT(folder.names("a"), IsSupersetOf({"still_-1.png", "still_0.png", "still_1.png", "video.mp4"}));
+  EXPECT_EQ(with({"--still", "99"}).exit_code, 2);
+  EXPECT_EQ(with({"--camera", (folder / "none.yaml").string()}).exit_code, 2);
+  EXPECT_EQ(with({"--camera", folder.file("bad.yaml", "eye: [0, 0, 0]\nfow: 3\n")}).exit_code, 2);
+  EXPECT_EQ(tapesim({"render", (folder / "none").string()}).exit_code, 2);
+}

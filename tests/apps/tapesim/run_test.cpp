@@ -1,0 +1,206 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "cosim/run/state_file.hpp"
+#include "tape/step/stepper.hpp"
+#include "tests/apps/tapesim/program.hpp"
+
+using namespace tape::test;
+using nlohmann::json;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+namespace {
+/// A short strip that falls on a table; 12 steps.
+constexpr const char* kScene = R"(scene: small
+film: vinyl_19mm
+time: {dt: 0.01, duration: 0.12}
+strip: {length: 0.04, cells_across: 2, position: [-0.02, 0, 0.003]}
+bodies:
+  table: {shape: box, size: [0.1, 0.1, 0.02], position: [0, 0, -0.01]}
+script:
+  - {grip: tape.root, as: hand}
+record: {rate: 50, figures: [tip, rest_speed]}
+)";
+
+std::vector<std::string> with(std::vector<std::string> first, const std::vector<std::string>& more) {
+  first.insert(first.end(), more.begin(), more.end());
+  return first;
+}
+
+class Run : public testing::Test {
+ protected:
+  Outcome run(const std::string& out, const std::vector<std::string>& more = {}) const {
+    return tapesim(with({"run", scene, "--out", (folder / out).string()}, more));
+  }
+  json report(const std::string& out) const { return json::parse(read(folder / out / "report.json")); }
+
+  Folder folder;
+  std::string scene = folder.file("small.yaml", kScene);
+};
+using BadInput = Run;
+}  // namespace
+
+TEST_F(Run, LeavesItsFourFilesAndNoOther) {
+  const Outcome outcome = run("a");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(folder.names("a"), ElementsAre("report.json", "snapshot.h5", "state.h5", "steps.csv"));
+}
+TEST_F(Run, ReportHasAllKeysThatScriptsRelyOn) {
+  ASSERT_EQ(run("a", {"--steps", "3"}).exit_code, 0);
+  const json r = report("a");
+  for (const char* key : {"status",
+                          "scene",
+                          "model",
+                          "backend",
+                          "threads",
+                          "version",
+                          "settings",
+                          "steps",
+                          "sim_time_s",
+                          "wall_s",
+                          "real_time_factor",
+                          "step_ms",
+                          "newton",
+                          "linear",
+                          "hessian_mode",
+                          "stop_error_estimate_m",
+                          "min_gap_m",
+                          "intersections",
+                          "energy_drift",
+                          "state_hash",
+                          "effects",
+                          "conditions",
+                          "figures"})
+    EXPECT_TRUE(r.contains(key)) << key;
+  for (const char* key : {"mean", "p50", "p95", "max"}) EXPECT_TRUE(r["step_ms"].contains(key)) << key;
+  for (const char* key : {"mean", "max", "failed_steps"}) EXPECT_TRUE(r["newton"].contains(key)) << key;
+  for (const char* key : {"solver", "iterations_mean"}) EXPECT_TRUE(r["linear"].contains(key)) << key;
+  for (const char* key : {"on", "why", "ms_per_step"}) EXPECT_TRUE(r["effects"]["membrane"].contains(key)) << key;
+  for (const char* key : {"name", "value", "required", "met"}) EXPECT_TRUE(r["conditions"][0].contains(key)) << key;
+  EXPECT_EQ(r["status"], "done");
+  EXPECT_EQ(r["steps"], 3);
+  EXPECT_DOUBLE_EQ(r["sim_time_s"], 0.03);
+  EXPECT_EQ(r["settings"]["time"]["dt"], 0.01);
+  EXPECT_TRUE(r["figures"].contains("tip_drop_m"));
+}
+TEST_F(Run, HasOneRowAStepAndStatesAtTheRateAskedFor) {
+  ASSERT_EQ(run("a").exit_code, 0);
+  const std::string steps = read(folder / "a" / "steps.csv");
+  EXPECT_EQ(std::count(steps.begin(), steps.end(), '\n'), 1 + 12);
+  const cosim::StateReader states(folder / "a" / "state.h5");
+  EXPECT_EQ(states.frames(), 7);  // 0, 0.02, ..., 0.12 s
+  EXPECT_NEAR(states.frame(6).time, 0.12, 1e-12);
+}
+TEST_F(Run, ResumedEndsInTheStateAndTheFilesOfAnUninterruptedOne) {
+  ASSERT_EQ(run("whole").exit_code, 0);
+  ASSERT_EQ(run("parts", {"--steps", "5"}).exit_code, 0);
+  ASSERT_EQ(run("parts", {"--resume", (folder / "parts" / "snapshot.h5").string()}).exit_code, 0);
+  EXPECT_EQ(report("parts")["state_hash"], report("whole")["state_hash"]);
+  EXPECT_EQ(report("parts")["resumed_from_step"], 5);
+  const std::string steps = read(folder / "parts" / "steps.csv");
+  EXPECT_EQ(std::count(steps.begin(), steps.end(), '\n'), 1 + 12);
+}
+TEST_F(Run, ThreadsDoNotChangeABit) {
+  ASSERT_EQ(run("one", {"--threads", "1"}).exit_code, 0);
+  for (const char* threads : {"2", "8"}) {
+    ASSERT_EQ(run("more", {"--threads", threads}).exit_code, 0);
+    EXPECT_EQ(report("more")["state_hash"], report("one")["state_hash"]) << threads << " threads";
+    EXPECT_EQ(report("more")["threads"], std::stoi(threads));
+  }
+}
+TEST_F(Run, ASettingFromOutsideReplacesTheSceneFiles) {
+  ASSERT_EQ(run("a", {"--steps", "1", "--set", "strip.length=0.03", "--set", "solver.velocity_tol=1e-4"}).exit_code, 0);
+  EXPECT_EQ(report("a")["settings"]["strips"]["tape"]["length"], 0.03);
+  EXPECT_EQ(report("a")["settings"]["solver"]["velocity_tol"], 1e-4);
+}
+TEST_F(Run, CtrlCEndsTheStepWritesEverythingAndSaysHowToGoOn) {
+  Program program({"run", scene, "--out", (folder / "a").string(), "--set", "time.duration=1000"});
+  ASSERT_TRUE(program.wait_for_error_text("run: "));
+  program.signal(SIGINT);
+  const Outcome outcome = program.wait();
+  EXPECT_EQ(outcome.exit_code, 130) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("--resume"));
+  EXPECT_THAT(folder.names("a"), ElementsAre("report.json", "snapshot.h5", "state.h5", "steps.csv"));
+  EXPECT_EQ(report("a")["status"], "interrupted");
+}
+
+TEST_F(BadInput, AMissingSceneIsNamed) {
+  const Outcome outcome = tapesim({"run", "/nowhere/scene.yaml"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("/nowhere/scene.yaml"));
+}
+TEST_F(BadInput, AnUnknownKeyIsNamedWithItsLine) {
+  const Outcome outcome = tapesim({"run", folder.file("bad.yaml", std::string(kScene) + "stripes: 3\n"), "--out", (folder / "a").string()});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("bad.yaml:10"));
+  EXPECT_THAT(outcome.err, HasSubstr("stripes"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a"));
+}
+TEST_F(BadInput, ASettingOutOfItsRangeIsNamedWithWhatIsAllowed) {
+  for (const char* set : {"time.dt=-1", "time.dt=nan", "strip.cells_across=many", "contact.dhat", "effects.glue=true",
+                          "solver.linear=magic", "record.figures=[weight]"}) {
+    const Outcome outcome = run("a", {"--set", set});
+    EXPECT_EQ(outcome.exit_code, 2) << set;
+    EXPECT_THAT(outcome.err, HasSubstr("tapesim: ")) << set;
+    EXPECT_FALSE(std::filesystem::exists(folder / "a")) << set;
+  }
+  EXPECT_THAT(run("a", {"--set", "time.dt=-1"}).err, testing::AllOf(HasSubstr("time.dt"), HasSubstr("(0, 1]"), HasSubstr("s")));
+}
+TEST_F(BadInput, AWrongCommandLineExitsWithTwo) {
+  EXPECT_EQ(tapesim({}).exit_code, 2);
+  EXPECT_EQ(tapesim({"fly"}).exit_code, 2);
+  EXPECT_EQ(tapesim({"run"}).exit_code, 2);
+  EXPECT_EQ(run("a", {"--backend", "abacus"}).exit_code, 2);
+  EXPECT_EQ(run("a", {"--steps", "-3"}).exit_code, 2);
+  EXPECT_EQ(tapesim({"run", "--help"}).exit_code, 0);
+}
+TEST_F(BadInput, AnIntersectingStartIsRefusedByCheckAndRun) {
+  const std::vector<std::string> sunk = {"--set", "strip.position=[-0.02, 0, -0.001]", "--set", "strip.rotation_deg=[0, -20, 0]"};
+  const Outcome outcome = tapesim(with({"check", scene}, sunk));
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, testing::AllOf(HasSubstr("tape"), HasSubstr("table")));
+  EXPECT_EQ(run("a", sunk).exit_code, 2);
+  EXPECT_FALSE(std::filesystem::exists(folder / "a"));
+}
+TEST_F(BadInput, ATruncatedOrForeignSnapshotIsRefused) {
+  ASSERT_EQ(run("a", {"--steps", "2"}).exit_code, 0);
+  const std::string whole = read(folder / "a" / "snapshot.h5");
+  for (std::size_t bytes : {std::size_t{0}, whole.size() / 3, whole.size() - 64}) {
+    const Outcome outcome = run("b", {"--resume", folder.file("cut.h5", whole.substr(0, bytes))});
+    EXPECT_EQ(outcome.exit_code, 2) << bytes;
+    EXPECT_THAT(outcome.err, HasSubstr("cut.h5")) << bytes;
+  }
+  EXPECT_EQ(run("b", {"--resume", (folder / "a" / "snapshot.h5").string(), "--set", "strip.cells_across=3"}).exit_code, 2);
+  EXPECT_EQ(run("b", {"--resume", (folder / "none.h5").string()}).exit_code, 2);
+  EXPECT_FALSE(std::filesystem::exists(folder / "b"));
+}
+TEST_F(BadInput, AFullDiskLeavesNothingHalfWritten) {
+  for (long bytes : {500L, 5000L, 20000L}) {
+    Program program({"run", scene, "--out", (folder / "a").string()}, {.file_bytes = bytes});
+    const Outcome outcome = program.wait();
+    EXPECT_EQ(outcome.exit_code, 2) << bytes << " bytes: " << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr((folder / "a").string())) << bytes;
+    EXPECT_THAT(folder.names("a"), Not(Contains("report.json"))) << bytes;
+    for (const std::string& name : folder.names("a")) EXPECT_NE(name[0], '.') << name;
+  }
+}
+TEST_F(BadInput, AFolderThatCannotBeMadeIsNamed) {
+  const Outcome outcome = tapesim({"run", scene, "--out", "/dev/full/run"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("/dev/full"));
+}
+TEST_F(BadInput, CudaWithoutADeviceIsRefusedInASentence) {
+  if (tape::cuda_available()) GTEST_SKIP() << "a device answers";
+  const Outcome outcome = run("a", {"--backend", "cuda"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("no CUDA device answers"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a"));
+}

@@ -1,0 +1,104 @@
+#include "cosim/run/state_file.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "tape/core/error.hpp"
+
+using namespace cosim;
+namespace fs = std::filesystem;
+
+namespace {
+/// A triangle of a strip and one on a body.
+const RecordedMesh kMesh{.scene = "two triangles",
+                         .objects = {{"tape", "vinyl", 0, 1, true}, {"box", "wood", 1, 1, false}},
+                         .triangles = {{0, 1, 2}, {3, 4, 5}},
+                         .rest = {{0, 0}, {1, 0}, {0, 1}, {0, 0}, {0, 0}, {0, 0}},
+                         .body = {-1, -1, -1, 0, 0, 0},
+                         .local = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                         .strip_vertices = 3,
+                         .camera = "fov: 30\n"};
+
+RecordedFrame frame(int step) {
+  Pose quarter_turn_about_z;
+  quarter_turn_about_z.rotation << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  quarter_turn_about_z.position = Vec3(0, 0, step);
+  return {.step = step,
+          .time = 0.1 * step,
+          .x = {Vec3(step, 1, 2), Vec3(3, 4, 5), Vec3(6, 7, 8)},
+          .bodies = {quarter_turn_about_z},
+          .contact_force = {0.5, 1, 0, 0, 0, 0.25}};
+}
+
+class StateFile : public testing::Test {
+ protected:
+  StateFile() { fs::create_directories(folder); }
+  ~StateFile() override { fs::remove_all(folder); }
+  fs::path folder = fs::temp_directory_path() / ("state_file_test_" + std::to_string(getpid()));
+  fs::path file = folder / "state.h5";
+};
+}  // namespace
+
+TEST_F(StateFile, ReadsBackWhatWasWritten) {
+  {
+    StateWriter writer(file, kMesh);
+    for (int step : {0, 5, 9}) writer.add(frame(step));
+    EXPECT_FALSE(fs::exists(file)) << "it has its name before it is complete";
+    writer.commit();
+  }
+  const StateReader reader(file);
+  ASSERT_EQ(reader.frames(), 3);
+  EXPECT_EQ(reader.mesh().scene, kMesh.scene);
+  EXPECT_EQ(reader.mesh().camera, kMesh.camera);
+  EXPECT_EQ(reader.mesh().triangles, kMesh.triangles);
+  EXPECT_EQ(reader.mesh().objects[1].name, "box");
+  EXPECT_EQ(reader.mesh().objects[1].material, "wood");
+  const RecordedFrame read = reader.frame(1), written = frame(5);
+  EXPECT_EQ(read.step, 5);
+  EXPECT_EQ(read.time, written.time);
+  EXPECT_EQ(read.x, written.x);
+  EXPECT_EQ(read.bodies[0].rotation, written.bodies[0].rotation);
+  EXPECT_EQ(read.contact_force, written.contact_force);
+}
+TEST_F(StateFile, VerticesOfBodiesFollowTheirPose) {
+  const std::vector<Vec3> x = vertex_positions(kMesh, frame(2));
+  EXPECT_EQ(x[0], Vec3(2, 1, 2));
+  EXPECT_EQ(x[3], Vec3(0, 1, 2));  // x turned to y, and 2 m up
+  EXPECT_EQ(x[4], Vec3(-1, 0, 2));
+}
+TEST_F(StateFile, LeavesNothingBehindUnlessCommitted) {
+  { StateWriter(file, kMesh).add(frame(0)); }
+  EXPECT_TRUE(fs::is_empty(folder));
+}
+TEST_F(StateFile, AMissingOrDamagedFileIsRefusedByName) {
+  EXPECT_THROW(StateReader(folder / "none.h5"), tape::InputError);
+  StateWriter writer(file, kMesh);
+  writer.add(frame(0));
+  writer.commit();
+  std::ifstream whole(file, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(whole), {}};
+  std::ofstream(folder / "cut.h5", std::ios::binary) << bytes.substr(0, bytes.size() / 2);
+  try {
+    const StateReader reader(folder / "cut.h5");
+    ADD_FAILURE();
+  } catch (const tape::InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("cut.h5"), std::string::npos);
+  }
+}
+TEST(NewFile, AFullDiskIsAnInputErrorThatNamesTheFile) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+  const fs::path folder = fs::temp_directory_path() / ("new_file_test_" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  fs::create_symlink("/dev/full", folder / ("." + std::to_string(getpid()) + ".report.json"));
+  try {
+    write_text(folder / "report.json", std::string(100, 'x'));
+    ADD_FAILURE();
+  } catch (const tape::InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("No space left"), std::string::npos) << e.what();
+  }
+  EXPECT_TRUE(fs::is_empty(folder));
+  fs::remove_all(folder);
+}
