@@ -102,10 +102,15 @@ TEST(LinearSolver, CholeskyIsSupernodalForARollAndSolvesIt) {
 }
 
 TEST(LinearSolver, TheStripPreconditionerIsExactWithoutEntriesOutsideItsBands) {
-  StripSystem s = strip(200);
-  const int body = s.add_body(Vec3(100, 3, -4), 30);
-  for (int i = 0; i < 100; ++i) s.add_contact_to_body(7 * 90 + i, body, Vec3(0.36, 0.48, 0.8), 1e5);
-  for (int i = 0; i < 100; ++i) s.add_contact(i, i + 9, Vec3(0.6, 0, 0.8), 1e4);
+  StripSystem s;
+  const int before = s.add_body(Vec3(100, 3, -4), 30);  // bodies stand on both sides of their couplings
+  const int first = s.add_strip(200);
+  const int behind = s.add_body(Vec3(50, 3, 9), 20);
+  for (int i = 0; i < 100; ++i) {
+    s.add_contact_to_body(first + 7 * 90 + i, before, Vec3(0.36, 0.48, 0.8), 1e5);
+    s.add_contact_to_body(first + 7 * 40 + i, behind, Vec3(0.36, 0.48, 0.8), 1e5);
+    s.add_contact(first + i, first + i + 9, Vec3(0.6, 0, 0.8), 1e4);
+  }
   const LinearReport report = solve(s, {.linear = LinearKind::pcg_strip});
   EXPECT_TRUE(report.converged);
   EXPECT_EQ(report.dropped, 0);
