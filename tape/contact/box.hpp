@@ -73,12 +73,30 @@ TAPE_HD inline Lanes query_box(const Box& b, int first_id, bool fixed) {
   out.m[7] = fixed ? 0.0f : 1.0f;
   return out;
 }
-TAPE_HD inline bool meets(const Lanes& stored, const Lanes& query) {
-  return (detail::ConstLanesMap(query.m) - detail::ConstLanesMap(stored.m)).minCoeff() >= 0;
-}
 TAPE_HD inline Lanes merged(const Lanes& a, const Lanes& b) {
   Lanes out;
   detail::LanesMap(out.m) = detail::ConstLanesMap(a.m).min(detail::ConstLanesMap(b.m));
   return out;
 }
+
+/// Eight stored boxes that are compared with a query together: lane by lane, eight boxes wide.
+struct alignas(32) LanesOf8 {
+  float m[8][8];  ///< [lane][box]
+  TAPE_HD void set(int box, const Lanes& b) {
+    for (int lane = 0; lane < 8; ++lane) m[lane][box] = b.m[lane];
+  }
+  TAPE_HD Lanes all() const {
+    Lanes out;
+    for (int lane = 0; lane < 8; ++lane) out.m[lane] = detail::ConstLanesMap(m[lane]).minCoeff();
+    return out;
+  }
+  /// Bit k says whether box k meets the query.
+  TAPE_HD unsigned met(const Lanes& query) const {
+    Eigen::Array<float, 8, 1, Eigen::DontAlign> slack = query.m[0] - detail::ConstLanesMap(m[0]);
+    for (int lane = 1; lane < 8; ++lane) slack = slack.min(query.m[lane] - detail::ConstLanesMap(m[lane]));
+    unsigned bits = 0;
+    for (int box = 0; box < 8; ++box) bits |= static_cast<unsigned>(slack[box] >= 0) << box;
+    return bits;
+  }
+};
 }  // namespace tape

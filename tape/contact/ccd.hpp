@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -31,29 +32,37 @@ TAPE_HD inline Real first_zero(Real a, Real b, Real c) {
   return root - b > 0 ? 2 * a / (root - b) : 0.0;
 }
 
-/// Where four paths stand at one time, relative to the first of them, and how they go on.
+/// Where four paths stand at one time, relative to the start of the first and seen from its drift, and how they go on.
 struct Motion {
   Vec3 x[4], velocity[4];  ///< [m], [m] per whole step
   Real bend[4];            ///< [m] bound of the acceleration, per whole step squared
-  Real round_off;          ///< [m] bound of the error of a projected difference of two of the positions
 };
 TAPE_HD inline Motion motion_at(const VertexPath (&path)[4], Real t) {
   Motion m;
-  const Vec3 origin = path[0].centre, drift = path[0].velocity;
+  for (int i = 0; i < 4; ++i) {
+    const VertexPath& p = path[i];
+    const Vec3 start = p.centre - path[0].centre;
+    m.velocity[i] = p.velocity - path[0].velocity;
+    m.bend[i] = 0;
+    if (p.straight()) {
+      m.x[i] = (start + p.arm) + t * m.velocity[i];
+      continue;
+    }
+    const Vec3 arm = rotate(t * p.spin, p.arm), swing = p.spin.cross(arm);
+    m.x[i] = (start + arm) + t * m.velocity[i];
+    m.velocity[i] += swing;
+    m.bend[i] = p.spin.norm() * swing.norm();
+  }
+  return m;
+}
+/// Bound of the error [m] of n . (x_i - x_j) at time t, n a unit vector.
+TAPE_HD inline Real round_off(const VertexPath (&path)[4], Real t) {
   Real size = 0;
   for (int i = 0; i < 4; ++i) {
     const VertexPath& p = path[i];
-    const Vec3 start = p.centre - origin, velocity = p.velocity - drift, moved = t * velocity;
-    const bool straight = p.straight();
-    const Vec3 arm = straight ? p.arm : rotate(t * p.spin, p.arm);
-    const Vec3 swing = straight ? Vec3(Vec3::Zero()) : Vec3(p.spin.cross(arm));
-    m.x[i] = (start + arm) + moved;
-    m.velocity[i] = velocity + swing;
-    m.bend[i] = straight ? 0.0 : p.spin.norm() * swing.norm();
-    size = std::fmax(size, (start.cwiseAbs() + arm.cwiseAbs() + moved.cwiseAbs()).maxCoeff());
+    size += (p.centre - path[0].centre).cwiseAbs().sum() + p.arm.cwiseAbs().sum() + t * (p.velocity - path[0].velocity).cwiseAbs().sum();
   }
-  m.round_off = 32 * std::numeric_limits<Real>::epsilon() * size;
-  return m;
+  return 16 * std::numeric_limits<Real>::epsilon() * size;
 }
 TAPE_HD inline bool at_rest(const Motion& m) {
   for (int i = 0; i < 4; ++i)
@@ -72,7 +81,7 @@ TAPE_HD inline bool at_rest(const Motion& m) {
 TAPE_HD inline PairStep largest_step(PairKind kind, const VertexPath (&path)[4], Real xi, const CcdSettings& settings) {
   constexpr Real kUsed = 0.99;      // of each safe advance, so that the check of a step just taken passes despite round-off
   constexpr Real kTolerance = 0.1;  // stop when the gap is within this share of the smallest one allowed
-  const int firsts = kind == PairKind::vertex_triangle ? 1 : 2;
+  const bool vertex = kind == PairKind::vertex_triangle;
   Real t = 0, kept = 0;
   for (int k = 0; k < settings.iterations; ++k) {
     const detail::Motion m = detail::motion_at(path, t);
@@ -82,22 +91,25 @@ TAPE_HD inline PairStep largest_step(PairKind kind, const VertexPath (&path)[4],
     const Real d = p.norm();
     if (!(d > 0)) return {t, false};
     const Vec3 n = p / d;
-    Real gaps[4], gap = std::numeric_limits<Real>::infinity();
-    const auto each = [&](auto&& f) {
-      for (int i = 0, pair = 0; i < firsts; ++i)
-        for (int j = firsts; j < 4; ++j) f(pair++, i, j);
-    };
-    each([&](int pair, int i, int j) {
-      gaps[pair] = n.dot(m.x[i] - m.x[j]) - xi - m.round_off;
-      gap = std::fmin(gap, gaps[pair]);
-    });
+    Real height[4], rate[4];  // of the vertices along n: the first primitive stands above the second
+    for (int i = 0; i < 4; ++i) height[i] = n.dot(m.x[i]), rate[i] = n.dot(m.velocity[i]);
+    const Real taken = xi + detail::round_off(path, t);
+    const Real low = vertex ? height[0] : std::min(height[0], height[1]);
+    const Real high = vertex ? std::max(height[1], std::max(height[2], height[3])) : std::max(height[2], height[3]);
+    const Real gap = low - high - taken;
     if (k == 0) kept = gap > 0 ? settings.eta * gap : gap;
     if (k > 0 && !(gap > (1 + kTolerance) * kept)) return {t, false};
-    Real safe = std::numeric_limits<Real>::infinity();
-    each([&](int pair, int i, int j) {
-      safe = std::fmin(safe, detail::first_zero(gaps[pair] - kept, n.dot(m.velocity[i] - m.velocity[j]), m.bend[i] + m.bend[j]));
-    });
-    if (t + safe >= 1) return {1, false};
+    const Real rest = 1 - t;
+    Real safe = rest;
+    bool arrives = true;
+    for (int i = 0; i < (vertex ? 1 : 2); ++i)
+      for (int j = vertex ? 1 : 2; j < 4; ++j) {
+        const Real spare = std::max(0.0, height[i] - height[j] - taken - kept), approach = rate[i] - rate[j], bend = m.bend[i] + m.bend[j];
+        if (spare + rest * (approach - 0.5 * bend * rest) >= 0) continue;  // a concave bound that is positive at both ends
+        arrives = false;
+        safe = std::min(safe, detail::first_zero(spare, approach, bend));
+      }
+    if (arrives) return {1, false};
     if (!(gap > 0)) return {t, false};
     t += kUsed * safe;
   }

@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+
 #include "tape/contact/ccd.hpp"
 #include "tape/contact/surface.hpp"
 #include "tape/contact/tree.hpp"
@@ -14,9 +16,9 @@ struct SurfaceView {
   Span<const int> vertex_carrier, edge_carrier, triangle_carrier;  ///< body that carries the whole primitive, kFixed or kFree
   int materials;
   Real dhat;  ///< [m]
-  TAPE_HD Real xi(const SurfaceEdge& e) const { return std::fmax(vertices[e.v[0]].xi, vertices[e.v[1]].xi); }
+  TAPE_HD Real xi(const SurfaceEdge& e) const { return std::max(vertices[e.v[0]].xi, vertices[e.v[1]].xi); }
   TAPE_HD Real xi(const SurfaceTriangle& t) const {
-    return std::fmax(vertices[t.v[0]].xi, std::fmax(vertices[t.v[1]].xi, vertices[t.v[2]].xi));
+    return std::max(vertices[t.v[0]].xi, std::max(vertices[t.v[1]].xi, vertices[t.v[2]].xi));
   }
   TAPE_HD int interface(int v, int w) const {
     const int a = vertices[v].material, b = vertices[w].material;
@@ -52,23 +54,56 @@ struct Plus {
   TAPE_HD int operator()(int a, int b) const { return a + b; }
 };
 
-TAPE_HD inline Box reach(const SurfaceView& s, Span<const Box> trust, const SurfaceEdge& e) {
-  return inflated(joined(trust[e.v[0]], trust[e.v[1]]), s.xi(e) + s.dhat / 2);
-}
-struct EdgeBoxes {
-  SurfaceView s;
-  Span<const Box> trust;
-  Span<Lanes> boxes;
-  TAPE_HD void operator()(int i) const { boxes[i] = stored_box(reach(s, trust, s.edges[i]), i, s.edge_carrier[i] == kFixed); }
+/// Primitives as a query looks at them: at the centres of the balls, with all that the decision needs in one place.
+struct EdgeShape {
+  Vec3 middle, half;  ///< [m] end points are middle -+ half
+  Real reach;         ///< [m] two edges that are farther apart than their reaches together never come within dhat
+  int v[2], carrier;
 };
-struct TriangleBoxes {
+struct TriangleShape {
+  Vec3 x[3];    ///< [m]
+  Vec3 normal;  ///< unit, or zero without area
+  Real reach;   ///< [m]
+  int v[3], carrier;
+};
+/// Covers the rounding of the tests below, which is some 1e-16 of the coordinates.
+inline constexpr Real kRounding = 1e-9;
+
+struct MakeEdges {
   SurfaceView s;
   Span<const Box> trust;
+  Span<const Ball> ball;
   Span<Lanes> boxes;
+  Span<EdgeShape> shapes;
+  TAPE_HD void operator()(int i) const {
+    const SurfaceEdge& e = s.edges[i];
+    const Ball &b0 = ball[e.v[0]], &b1 = ball[e.v[1]];
+    const Real beyond = s.xi(e) + s.dhat / 2;
+    shapes[i] = {.middle = 0.5 * (b0.centre + b1.centre),
+                 .half = 0.5 * (b1.centre - b0.centre),
+                 .reach = (std::max(b0.radius, b1.radius) + beyond) * (1 + kRounding),
+                 .v = {e.v[0], e.v[1]},
+                 .carrier = s.edge_carrier[i]};
+    boxes[i] = stored_box(inflated(joined(trust[e.v[0]], trust[e.v[1]]), beyond), i, s.edge_carrier[i] == kFixed);
+  }
+};
+struct MakeTriangles {
+  SurfaceView s;
+  Span<const Box> trust;
+  Span<const Ball> ball;
+  Span<Lanes> boxes;
+  Span<TriangleShape> shapes;
   TAPE_HD void operator()(int i) const {
     const SurfaceTriangle& t = s.triangles[i];
-    const Box b = inflated(joined(trust[t.v[0]], joined(trust[t.v[1]], trust[t.v[2]])), s.xi(t) + s.dhat / 2);
-    boxes[i] = stored_box(b, i, s.triangle_carrier[i] == kFixed);
+    const Ball &b0 = ball[t.v[0]], &b1 = ball[t.v[1]], &b2 = ball[t.v[2]];
+    const Real beyond = s.xi(t) + s.dhat / 2;
+    shapes[i] = {.x = {b0.centre, b1.centre, b2.centre},
+                 .normal = (b1.centre - b0.centre).cross(b2.centre - b0.centre).normalized(),
+                 .reach = (std::max(b0.radius, std::max(b1.radius, b2.radius)) + beyond) * (1 + kRounding),
+                 .v = {t.v[0], t.v[1], t.v[2]},
+                 .carrier = s.triangle_carrier[i]};
+    const Box all = joined(trust[t.v[0]], joined(trust[t.v[1]], trust[t.v[2]]));
+    boxes[i] = stored_box(inflated(all, beyond), i, s.triangle_carrier[i] == kFixed);
   }
 };
 
@@ -77,27 +112,23 @@ struct VertexQuery {
   SurfaceView s;
   Span<const Box> trust;
   Span<const Ball> ball;
+  Span<const TriangleShape> triangles;
   TreeView tree;
   template <class F>
   TAPE_HD void visit(int v, F&& f) const {
     const int carrier = s.vertex_carrier[v];
-    const Lanes query = query_box(inflated(trust[v], s.vertices[v].xi + s.dhat / 2), 0, carrier == kFixed);
-    tree.visit(query, [&](int t) {
-      if (allowed(v, carrier, t) && near(v, s.triangles[t])) f(t);
+    const Real beyond = s.vertices[v].xi + s.dhat / 2, reach = ball[v].radius + beyond;
+    const Vec3 centre = ball[v].centre;
+    tree.visit(query_box(inflated(trust[v], beyond), 0, carrier == kFixed), [&](int t) {
+      const TriangleShape& b = triangles[t];
+      const bool apart = v != b.v[0] && v != b.v[1] && v != b.v[2] && (carrier == kFree || carrier != b.carrier);
+      if (apart && near(centre, b, reach + b.reach)) f(t);
     });
   }
-  TAPE_HD bool allowed(int v, int carrier, int t) const {
-    const SurfaceTriangle& b = s.triangles[t];
-    return v != b.v[0] && v != b.v[1] && v != b.v[2] && (carrier == kFree || carrier != s.triangle_carrier[t]);
-  }
-  TAPE_HD bool near(int v, const SurfaceTriangle& t) const {
-    const Ball &b0 = ball[t.v[0]], &b1 = ball[t.v[1]], &b2 = ball[t.v[2]], &b = ball[v];
-    const Real range = b.radius + std::fmax(b0.radius, std::fmax(b1.radius, b2.radius)) + s.vertices[v].xi + s.xi(t) + s.dhat;
-    const Vec3 x[4] = {b.centre, b0.centre, b1.centre, b2.centre};
-    const Vec3 normal = (x[2] - x[1]).cross(x[3] - x[1]);
-    const Real height = normal.dot(x[0] - x[1]), range2 = range * range * (1 + 1e-9);
-    if (height * height > range2 * normal.squaredNorm()) return false;
-    return combine(closest_vertex_triangle(x).weight, x).squaredNorm() <= range2;
+  TAPE_HD static bool near(const Vec3& centre, const TriangleShape& b, Real range) {
+    if (std::fabs(b.normal.dot(centre - b.x[0])) > range) return false;
+    const Vec3 x[4] = {centre, b.x[0], b.x[1], b.x[2]};
+    return combine(closest_vertex_triangle(x).weight, x).squaredNorm() <= range * range;
   }
   TAPE_HD ContactPair pair(int v, int t) const {
     const SurfaceVertex& a = s.vertices[v];
@@ -106,7 +137,7 @@ struct VertexQuery {
             .kind = PairKind::vertex_triangle,
             .interface = s.interface(v, b.v[0]),
             .xi = a.xi + s.xi(b),
-            .weight = std::fmin(a.area, b.area),
+            .weight = std::min(a.area, b.area),
             .mollifier = 0};
   }
 };
@@ -115,37 +146,32 @@ struct VertexQuery {
 struct EdgeQuery {
   SurfaceView s;
   Span<const Box> trust;
-  Span<const Ball> ball;
+  Span<const EdgeShape> edges;
   TreeView tree;
   template <class F>
   TAPE_HD void visit(int i, F&& f) const {
-    const int carrier = s.edge_carrier[i];
-    const SurfaceEdge a = s.edges[i];
-    const Lanes query = query_box(reach(s, trust, a), i + 1, carrier == kFixed);
-    tree.visit(query, [&](int j) {
-      if (allowed(a, carrier, j) && near(a, s.edges[j])) f(j);
+    const EdgeShape a = edges[i];
+    const Box box = inflated(joined(trust[a.v[0]], trust[a.v[1]]), s.xi(s.edges[i]) + s.dhat / 2);
+    tree.visit(query_box(box, i + 1, a.carrier == kFixed), [&](int j) {
+      const EdgeShape& b = edges[j];
+      const bool apart = a.v[0] != b.v[0] && a.v[0] != b.v[1] && a.v[1] != b.v[0] && a.v[1] != b.v[1];
+      if (apart && (a.carrier == kFree || a.carrier != b.carrier) && near(a, b)) f(j);
     });
   }
-  TAPE_HD bool allowed(const SurfaceEdge& a, int carrier, int j) const {
-    const SurfaceEdge& b = s.edges[j];
-    const bool apart = a.v[0] != b.v[0] && a.v[0] != b.v[1] && a.v[1] != b.v[0] && a.v[1] != b.v[1];
-    return apart && (carrier == kFree || carrier != s.edge_carrier[j]);
-  }
-  TAPE_HD bool near(const SurfaceEdge& a, const SurfaceEdge& b) const {
-    const Ball &a0 = ball[a.v[0]], &a1 = ball[a.v[1]], &b0 = ball[b.v[0]], &b1 = ball[b.v[1]];
-    const Real range = std::fmax(a0.radius, a1.radius) + std::fmax(b0.radius, b1.radius) + s.xi(a) + s.xi(b) + s.dhat;
-    const Real range2 = range * range * (1 + 1e-9);
-    const Vec3 x[4] = {a0.centre, a1.centre, b0.centre, b1.centre};
-    if (separated(x[1] - x[0], x[3] - x[2], x[0] + x[1] - x[2] - x[3], range2)) return false;
+  TAPE_HD static bool near(const EdgeShape& a, const EdgeShape& b) {
+    const Vec3 offset = a.middle - b.middle, across = a.half.cross(b.half);
+    const Real range = a.reach + b.reach, range2 = range * range, height = offset.dot(across);
+    if (height * height > range2 * across.squaredNorm()) return false;  // far apart along the common normal
+    if (beside(a.half, b.half, offset, range2)) return false;
+    const Vec3 x[4] = {offset - a.half, offset + a.half, -b.half, b.half};
     return combine(closest_edge_edge(x).weight, x).squaredNorm() <= range2;
   }
-  /// Whether the part w across ea of the offset between the mid-points separates the edges by more than the range: the
-  /// projection of edge a on w is a point, that of b has the half-length |w . eb| / (2 |w|).
-  TAPE_HD static bool separated(const Vec3& ea, const Vec3& eb, const Vec3& offset_twice, Real range2) {
-    const Real length2 = ea.squaredNorm();
-    const Vec3 w = length2 * offset_twice - ea.dot(offset_twice) * ea;
-    const Real apart_twice = w.dot(offset_twice) - std::fabs(w.dot(eb));  // times |w|
-    return apart_twice > 0 && apart_twice * apart_twice > 4 * range2 * w.squaredNorm() * (1 + 1e-9);
+  /// Whether the part w of the offset across edge a separates the edges by more than the range: the projection of a on w is a
+  /// point, that of b has the half-length |w . b| / |w|.
+  TAPE_HD static bool beside(const Vec3& a, const Vec3& b, const Vec3& offset, Real range2) {
+    const Vec3 w = a.squaredNorm() * offset - a.dot(offset) * a;
+    const Real gap = w.dot(offset) - std::fabs(w.dot(b));  // times |w|
+    return gap > 0 && gap * gap > range2 * w.squaredNorm();
   }
   TAPE_HD ContactPair pair(int i, int j) const {
     const SurfaceEdge &a = s.edges[i], &b = s.edges[j];
@@ -153,7 +179,7 @@ struct EdgeQuery {
             .kind = PairKind::edge_edge,
             .interface = s.interface(a.v[0], b.v[0]),
             .xi = s.xi(a) + s.xi(b),
-            .weight = std::fmin(a.area, b.area),
+            .weight = std::min(a.area, b.area),
             .mollifier = 1e-3 * a.length2 * b.length2};
   }
 };

@@ -44,6 +44,8 @@ class ContactSearch {
   Buffer<Box> trust_;          ///< [nv]
   Buffer<detail::Ball> ball_;  ///< [nv]
   Buffer<Lanes> triangle_boxes_, edge_boxes_;
+  Buffer<detail::EdgeShape> edges_;
+  Buffer<detail::TriangleShape> triangles_;
   BoxTree triangle_tree_, edge_tree_;
   detail::Hits vertex_hits_, edge_hits_;
   Buffer<ContactPair> pairs_;

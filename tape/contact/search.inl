@@ -19,14 +19,15 @@ inline bool ContactSearch::update(const PathView& paths, Real margin) {
 inline void ContactSearch::rebuild(const PathView& paths, Real margin) {
   const detail::SurfaceView s = surface_.view();
   trust_.resize(s.vertices.size), ball_.resize(s.vertices.size);
-  triangle_boxes_.resize(s.triangles.size), edge_boxes_.resize(s.edges.size);
+  triangle_boxes_.resize(s.triangles.size), triangles_.resize(s.triangles.size);
+  edge_boxes_.resize(s.edges.size), edges_.resize(s.edges.size);
   parallel_for(s.vertices.size, detail::MakeTrust{paths, margin, trust_.span(), ball_.span()});
-  parallel_for(s.triangles.size, detail::TriangleBoxes{s, trust_.span(), triangle_boxes_.span()});
-  parallel_for(s.edges.size, detail::EdgeBoxes{s, trust_.span(), edge_boxes_.span()});
+  parallel_for(s.triangles.size, detail::MakeTriangles{s, trust_.span(), ball_.span(), triangle_boxes_.span(), triangles_.span()});
+  parallel_for(s.edges.size, detail::MakeEdges{s, trust_.span(), ball_.span(), edge_boxes_.span(), edges_.span()});
   triangle_tree_.build(triangle_boxes_.span());
   edge_tree_.build(edge_boxes_.span());
-  const detail::VertexQuery vertices{s, trust_.span(), ball_.span(), triangle_tree_.view()};
-  const detail::EdgeQuery edges{s, trust_.span(), ball_.span(), edge_tree_.view()};
+  const detail::VertexQuery vertices{s, trust_.span(), ball_.span(), triangles_.span(), triangle_tree_.view()};
+  const detail::EdgeQuery edges{s, trust_.span(), edges_.span(), edge_tree_.view()};
   report_.vertex_triangle = vertex_hits_.count(s.vertices.size, vertices);
   report_.edge_edge = edge_hits_.count(s.edges.size, edges);
   pairs_.resize(report_.vertex_triangle + report_.edge_edge);

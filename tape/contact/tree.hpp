@@ -5,28 +5,36 @@
 #include "tape/contact/box.hpp"
 #include "tape/core/side.hpp"
 
-/// Bounding volume hierarchy: an implicit complete binary tree over boxes in Morton order. Node 1 is the root, node k has the
-/// children 2k and 2k + 1, the leaves are nodes [leaves, 2 leaves). Nothing in it depends on the number of threads.
+/// Bounding volume hierarchy: an implicit complete tree over boxes in Morton order, eight children to a node. Level 0 holds the
+/// boxes themselves, eight to a node; node i of a level holds the boxes of nodes 8 i .. 8 i + 7 of the level below; the last level is one
+/// node. Nothing depends on the number of threads.
 namespace tape::TAPE_SIDE {
+inline constexpr int kMaxLevels = 8;  // 8^8 boxes, more than a float can number
+
 struct TreeView {
-  Span<const Lanes> nodes;  ///< [2 leaves]; node 0 is not used
-  Span<const int> id;       ///< [leaves] box at each leaf
+  Span<const LanesOf8> nodes;
+  Span<const int> id;     ///< [8 nodes of level 0] box at each place
+  int first[kMaxLevels];  ///< where each level begins in `nodes`
+  int levels;
   /// Calls f(id) for every box that meets the query, in Morton order.
   template <class F>
   TAPE_HD void visit(const Lanes& query, F&& f) const {
-    const unsigned leaves = static_cast<unsigned>(id.size);
-    if (leaves == 0) return;
-    unsigned k = 1;
-    do {
-      const bool hit = meets(nodes[static_cast<int>(k)], query);
-      if (hit && k < leaves) {
-        k *= 2;
-        continue;
+    if (levels == 0) return;
+    int level = levels - 1, at = 0;  // node `at` of the level
+    std::uint64_t open = 0;          // children yet to see: byte k for the one node of level k that leads here
+    while (true) {
+      unsigned met = nodes[first[level] + at].met(query);
+      if (level > 0) {
+        open |= std::uint64_t{met} << (8 * level);
+      } else {
+        for (; met != 0; met &= met - 1) f(id[8 * at + std::countr_zero(met)]);
       }
-      if (hit) f(id[static_cast<int>(k - leaves)]);
-      ++k;  // the next node in depth-first order that is not below this one
-      k >>= std::countr_zero(k);
-    } while (k != 1);
+      if (open == 0) return;
+      const int next = std::countr_zero(open), up = next / 8;
+      open &= open - 1;
+      at = 8 * (at >> (3 * (up - level))) + next % 8;
+      level = up - 1;
+    }
   }
 };
 
@@ -52,12 +60,12 @@ struct MortonKeys {
   Span<std::uint64_t> key;
   Span<int> id;
   TAPE_HD void operator()(int i) const {
-    const float extent = std::fmax(-all.m[3] - all.m[0], std::fmax(-all.m[4] - all.m[1], -all.m[5] - all.m[2]));
+    const float extent = std::max(-all.m[3] - all.m[0], std::max(-all.m[4] - all.m[1], -all.m[5] - all.m[2]));
     const float scale = extent > 0 ? 65535.0f / extent : 0.0f;
     std::uint64_t code = 0;
     for (int k = 0; k < 3; ++k) {
       const float centre = 0.5f * (boxes[i].m[k] - boxes[i].m[3 + k]);
-      code |= spread_bits(static_cast<std::uint32_t>(std::fmax(0.0f, (centre - all.m[k]) * scale))) << k;
+      code |= spread_bits(static_cast<std::uint32_t>(std::max(0.0f, (centre - all.m[k]) * scale))) << k;
     }
     key[i] = code;
     id[i] = i;
@@ -66,18 +74,23 @@ struct MortonKeys {
 struct FillLeaves {
   Span<const Lanes> boxes;
   Span<const int> order;  ///< [n] box of each place in Morton order
-  Span<Lanes> nodes;
-  Span<int> id;  ///< [leaves] places beyond n stay empty
-  TAPE_HD void operator()(int i) const {
-    const bool used = i < order.size;
-    id[i] = used ? order[i] : -1;
-    nodes[id.size + i] = used ? boxes[order[i]] : empty_box();
+  Span<LanesOf8> nodes;
+  Span<int> id;  ///< [8 nodes] places beyond n stay empty
+  TAPE_HD void operator()(int node) const {
+    for (int k = 0; k < 8; ++k) {
+      const int place = 8 * node + k;
+      const bool used = place < order.size;
+      id[place] = used ? order[place] : -1;
+      nodes[node].set(k, used ? boxes[order[place]] : empty_box());
+    }
   }
 };
-struct MergeLevel {
-  Span<Lanes> nodes;
-  int first;
-  TAPE_HD void operator()(int i) const { nodes[first + i] = merged(nodes[2 * (first + i)], nodes[2 * (first + i) + 1]); }
+struct FillLevel {
+  Span<const LanesOf8> below;
+  Span<LanesOf8> nodes;
+  TAPE_HD void operator()(int node) const {
+    for (int k = 0; k < 8; ++k) nodes[node].set(k, 8 * node + k < below.size ? below[8 * node + k].all() : empty_box());
+  }
 };
 }  // namespace detail
 
@@ -86,19 +99,30 @@ class BoxTree {
   void build(Span<const Lanes> boxes) {
     const int n = boxes.size;
     key_.resize(n), order_.resize(n);
-    const int leaves = n == 0 ? 0 : static_cast<int>(std::bit_ceil(static_cast<unsigned>(n)));
-    id_.resize(leaves), nodes_.resize(2 * leaves);
+    view_ = {};
     if (n == 0) return;
+    int size[kMaxLevels], total = 0;
+    for (int count = n; view_.levels == 0 || count > 1; ++view_.levels) {
+      count = (count + 7) / 8;
+      TAPE_CHECK(view_.levels < kMaxLevels);
+      size[view_.levels] = count, view_.first[view_.levels] = total;
+      total += count;
+    }
+    nodes_.resize(total), id_.resize(8 * size[0]);
+    view_.nodes = nodes_.span(), view_.id = id_.span();
     const Lanes all = reduce(n, empty_box(), detail::LoadLanes{boxes}, detail::BoxJoin{});
     parallel_for(n, detail::MortonKeys{boxes, all, key_.span(), order_.span()});
     sort_by_key(key_, order_);
-    parallel_for(leaves, detail::FillLeaves{boxes, order_.span(), nodes_.span(), id_.span()});
-    for (int first = leaves / 2; first > 0; first /= 2) parallel_for(first, detail::MergeLevel{nodes_.span(), first});
+    parallel_for(size[0], detail::FillLeaves{boxes, order_.span(), level(0, size), id_.span()});
+    for (int l = 1; l < view_.levels; ++l) parallel_for(size[l], detail::FillLevel{level(l - 1, size), level(l, size)});
   }
-  TreeView view() const { return {nodes_.span(), id_.span()}; }
+  TreeView view() const { return view_; }
 
  private:
-  Buffer<Lanes> nodes_;
+  Span<LanesOf8> level(int l, const int* size) { return {nodes_.span().data + view_.first[l], size[l]}; }
+
+  TreeView view_{};
+  Buffer<LanesOf8> nodes_;
   Buffer<int> id_, order_;
   Buffer<std::uint64_t> key_;
 };

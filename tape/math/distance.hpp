@@ -20,11 +20,23 @@ TAPE_HD inline Vec3 combine(const Real (&weight)[4], const Vec3 (&x)[4]) {
 }
 
 namespace detail {
-/// Parameter in [0, 1] of the point on segment a-b closest to p.
-TAPE_HD inline Real segment_parameter(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 e = b - a;
-  const Real length2 = e.squaredNorm();
-  return length2 > 0 ? std::fmin(1.0, std::fmax(0.0, e.dot(p - a) / length2)) : 0.0;
+/// Parameter in [0, 1] of the point on a segment closest to a point: `along` is the product of the segment with the offset of the
+/// point from its start, `length2` its squared length.
+TAPE_HD inline Real segment_parameter(Real along, Real length2) { return along <= 0 ? 0.0 : along >= length2 ? 1.0 : along / length2; }
+/// Vertex p against the point at f of segment i-j. The offset points to the vertex, or with sign -1 to the segment.
+TAPE_HD inline Closest closest_on_segment(int p, int i, int j, Real f, Real sign) {
+  Closest out{{0, 0, 0, 0}, {{0, 0, 0, 0}, {0, 0, 0, 0}}, f > 0 && f < 1 ? 1 : 0};
+  out.weight[p] = sign, out.weight[i] = sign * (f - 1), out.weight[j] = -sign * f;
+  out.slope[0][i] = sign, out.slope[0][j] = -sign;
+  return out;
+}
+/// Index of the smallest of n, the first of equals.
+template <int N>
+TAPE_HD inline int smallest(const Real (&value)[N]) {
+  int best = 0;
+  for (int k = 1; k < N; ++k)
+    if (value[k] < value[best]) best = k;
+  return best;
 }
 }  // namespace detail
 
@@ -38,46 +50,35 @@ TAPE_HD inline Closest closest_vertex_triangle(const Vec3 (&x)[4]) {
     const Real beta = s / det, gamma = t / det;
     return {{1, beta + gamma - 1, -beta, -gamma}, {{0, 1, -1, 0}, {0, 1, 0, -1}}, 2};
   }
-  Closest best{};
-  Real best2 = -1;
-  for (int k = 0; k < 3; ++k) {  // the closest point is on the rim
-    const int i = 1 + k, j = 1 + (k + 1) % 3;
-    const Real f = detail::segment_parameter(x[0], x[i], x[j]);
-    const Real d2 = (r - (x[i] - x[1]) - f * (x[j] - x[i])).squaredNorm();
-    if (best2 >= 0 && d2 >= best2) continue;
-    best2 = d2;
-    best = {{1, 0, 0, 0}, {{0, 0, 0, 0}, {0, 0, 0, 0}}, f > 0 && f < 1 ? 1 : 0};
-    best.weight[i] = f - 1, best.weight[j] = -f;
-    best.slope[0][i] = 1, best.slope[0][j] = -1;
-  }
-  return best;
+  const Vec3 e3 = x[3] - x[2], r2 = x[0] - x[2], r3 = x[0] - x[3];  // the closest point is on the rim: 1-2, 2-3 or 3-1
+  const Real f[3] = {detail::segment_parameter(u, a), detail::segment_parameter(e3.dot(r2), e3.squaredNorm()),
+                     detail::segment_parameter(-e2.dot(r3), c)};
+  const Real d2[3] = {(r - f[0] * e1).squaredNorm(), (r2 - f[1] * e3).squaredNorm(), (r3 + f[2] * e2).squaredNorm()};
+  const int k = detail::smallest(d2);
+  return detail::closest_on_segment(0, 1 + k, k == 2 ? 1 : 2 + k, f[k], 1);
 }
 
 /// Closest points of edge x[0] x[1] and edge x[2] x[3]. For parallel edges one of the closest pairs, at an end point.
 TAPE_HD inline Closest closest_edge_edge(const Vec3 (&x)[4]) {
-  const Vec3 ea = x[1] - x[0], eb = x[3] - x[2], r = x[0] - x[2];
-  const Real a = ea.squaredNorm(), b = ea.dot(eb), c = eb.squaredNorm(), u = ea.dot(r), v = eb.dot(r);
-  const Real det = ea.cross(eb).squaredNorm();
-  const Real sn = b * v - c * u, tn = a * v - b * u;
-  Closest best{};
-  Real best2 = -1;
-  if (det > 1e-20 * a * c && sn > 0 && sn < det && tn > 0 && tn < det) {
-    const Real s = sn / det, t = tn / det;
-    best = {{1 - s, s, t - 1, -t}, {{-1, 1, 0, 0}, {0, 0, 1, -1}}, 2};
-    best2 = (r + s * ea - t * eb).squaredNorm();
-  }
-  for (int k = 0; k < 4; ++k) {  // an end point of one edge against the other edge
-    const bool on_a = k < 2;
-    const int p = k, i = on_a ? 2 : 0, j = i + 1;
-    const Real f = detail::segment_parameter(x[p], x[i], x[j]);
-    const Real d2 = ((x[p] - x[i]) - f * (x[j] - x[i])).squaredNorm();
-    if (best2 >= 0 && d2 >= best2) continue;
-    best2 = d2;
-    const Real sign = on_a ? 1 : -1;  // p points from edge b to edge a
-    best = {{0, 0, 0, 0}, {{0, 0, 0, 0}, {0, 0, 0, 0}}, f > 0 && f < 1 ? 1 : 0};
-    best.weight[p] = sign, best.weight[i] = sign * (f - 1), best.weight[j] = -sign * f;
-    best.slope[0][i] = sign, best.slope[0][j] = -sign;
-  }
-  return best;
+  constexpr Real kParallel = 1e-20, kNearlyParallel = 1e-8;  // squared sines: no crossing point; one that end points may beat
+  const Vec3 ea = x[1] - x[0], eb = x[3] - x[2], r = x[0] - x[2], n = ea.cross(eb);
+  const Real a = ea.squaredNorm(), b = ea.dot(eb), c = eb.squaredNorm(), u = ea.dot(r), v = eb.dot(r), det = n.squaredNorm();
+  const bool nearly_parallel = det <= kNearlyParallel * a * c;
+  // The products of dot products are cheap, but cancel to the square of a small angle; those of cross products to the angle.
+  const Real sn = nearly_parallel ? eb.cross(r).dot(n) : b * v - c * u;
+  const Real tn = nearly_parallel ? ea.cross(r).dot(n) : a * v - b * u;
+  const bool inside = det > kParallel * a * c && sn > 0 && sn < det && tn > 0 && tn < det;
+  const Real s = inside ? sn / det : 0, t = inside ? tn / det : 0;
+  const Closest across{{1 - s, s, t - 1, -t}, {{-1, 1, 0, 0}, {0, 0, 1, -1}}, 2};
+  if (inside && !nearly_parallel) return across;
+  // An end point of one edge against the other edge, in the order of the end points.
+  const Vec3 r1 = x[1] - x[2], r3 = x[3] - x[0];
+  const Real f[4] = {detail::segment_parameter(v, c), detail::segment_parameter(eb.dot(r1), c), detail::segment_parameter(-u, a),
+                     detail::segment_parameter(ea.dot(r3), a)};
+  const Real d2[4] = {(r - f[0] * eb).squaredNorm(), (r1 - f[1] * eb).squaredNorm(), (r + f[2] * ea).squaredNorm(),
+                      (r3 - f[3] * ea).squaredNorm()};
+  const int k = detail::smallest(d2);
+  if (inside && (r + s * ea - t * eb).squaredNorm() <= d2[k]) return across;
+  return k < 2 ? detail::closest_on_segment(k, 2, 3, f[k], 1) : detail::closest_on_segment(k, 0, 1, f[k], -1);
 }
 }  // namespace tape

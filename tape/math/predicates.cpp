@@ -69,6 +69,26 @@ bool flat_meet(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const
   }
   return segments_meet(p, q, a, b) || segments_meet(p, q, b, c) || segments_meet(p, q, c, a);
 }
+/// Whether a plane across n lies between segment 0-1 and triangle 2-3-4 beyond all doubt: `doubt` bounds the rounding of n . x.
+bool separates(const Vec3& n, const std::array<Vec3, 5>& x, Real size) {
+  const Real doubt = 32 * kEps * size * n.lpNorm<1>();
+  const auto [low, high] = std::minmax({n.dot(x[0]), n.dot(x[1])});
+  const auto [below, above] = std::minmax({n.dot(x[2]), n.dot(x[3]), n.dot(x[4])});
+  return low > above + doubt || below > high + doubt;
+}
+
+/// Decides nearly all pairs that are apart, above all those that lie in one plane, which the orientations could decide only in
+/// rationals. Any n gives a true answer.
+bool certainly_apart(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const std::array<Vec3, 5> x{p - a, q - a, Vec3::Zero(), b - a, c - a};
+  Real size = 0;
+  for (const Vec3& r : x) size = std::max(size, r.lpNorm<Eigen::Infinity>());
+  const Vec3 normal = x[3].cross(x[4]);
+  if (separates(normal, x, size)) return true;
+  for (const Vec3& along : {x[3], x[4], Vec3(c - b), Vec3(q - p)})
+    if (separates(normal.cross(along), x, size)) return true;
+  return false;
+}
 }  // namespace
 
 int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
@@ -92,6 +112,7 @@ int projected_orientation(const Vec3& a, const Vec3& b, const Vec3& c, int axis)
 }
 
 bool segment_meets_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
+  if (certainly_apart(p, q, a, b, c)) return false;
   const int sp = orientation(a, b, c, p), sq = orientation(a, b, c, q);
   if (sp * sq > 0) return false;
   if (sp == 0 && sq == 0) return flat_meet(p, q, a, b, c);
