@@ -60,17 +60,19 @@ TAPE_HD inline Closest closest_vertex_triangle(const Vec3 (&x)[4]) {
 
 /// Closest points of edge x[0] x[1] and edge x[2] x[3]. For parallel edges one of the closest pairs, at an end point.
 TAPE_HD inline Closest closest_edge_edge(const Vec3 (&x)[4]) {
-  constexpr Real kParallel = 1e-20, kNearlyParallel = 1e-8;  // squared sines: no crossing point; one that end points may beat
+  constexpr Real kParallel = 1e-20, kNearlyParallel = 1e-8;  // squared sines
   const Vec3 ea = x[1] - x[0], eb = x[3] - x[2], r = x[0] - x[2], n = ea.cross(eb);
   const Real a = ea.squaredNorm(), b = ea.dot(eb), c = eb.squaredNorm(), u = ea.dot(r), v = eb.dot(r), det = n.squaredNorm();
+  // The products of dot products are cheap, but cancel to the square of a small angle; those of cross products to the angle,
+  // so that the place where nearly parallel edges cross is off by eps / angle. The other parameter follows by projection: then the
+  // error of the offset lies across the edges, and is eps.
   const bool nearly_parallel = det <= kNearlyParallel * a * c;
-  // The products of dot products are cheap, but cancel to the square of a small angle; those of cross products to the angle.
   const Real sn = nearly_parallel ? eb.cross(r).dot(n) : b * v - c * u;
   const Real tn = nearly_parallel ? ea.cross(r).dot(n) : a * v - b * u;
-  const bool inside = det > kParallel * a * c && sn > 0 && sn < det && tn > 0 && tn < det;
-  const Real s = inside ? sn / det : 0, t = inside ? tn / det : 0;
-  const Closest across{{1 - s, s, t - 1, -t}, {{-1, 1, 0, 0}, {0, 0, 1, -1}}, 2};
-  if (inside && !nearly_parallel) return across;
+  if (det > kParallel * a * c && sn > 0 && sn < det && tn > 0 && tn < det) {
+    const Real s = sn / det, t = detail::segment_parameter(v + s * b, c);
+    return {{1 - s, s, t - 1, -t}, {{-1, 1, 0, 0}, {0, 0, 1, -1}}, 2};
+  }
   // An end point of one edge against the other edge, in the order of the end points.
   const Vec3 r1 = x[1] - x[2], r3 = x[3] - x[0];
   const Real f[4] = {detail::segment_parameter(v, c), detail::segment_parameter(eb.dot(r1), c), detail::segment_parameter(-u, a),
@@ -78,7 +80,6 @@ TAPE_HD inline Closest closest_edge_edge(const Vec3 (&x)[4]) {
   const Real d2[4] = {(r - f[0] * eb).squaredNorm(), (r1 - f[1] * eb).squaredNorm(), (r + f[2] * ea).squaredNorm(),
                       (r3 - f[3] * ea).squaredNorm()};
   const int k = detail::smallest(d2);
-  if (inside && (r + s * ea - t * eb).squaredNorm() <= d2[k]) return across;
   return k < 2 ? detail::closest_on_segment(k, 2, 3, f[k], 1) : detail::closest_on_segment(k, 0, 1, f[k], -1);
 }
 }  // namespace tape

@@ -117,14 +117,20 @@ TEST(Distance, CollinearEdgesAreTheirGapApartAndTheGradientPointsAlong) {
 
 TEST(Distance, NearlyParallelEdgesHaveTheExactDistanceAndItsSlope) {  // checks.md part 2: 1e-6 .. 1e2 degrees
   for (Real degrees = 1e-6; degrees <= 100; degrees *= 10)
-    for (const Real height : {0.1, 1.0}) {
+    for (const Real height : {1e-4, 1.0}) {
       const Real angle = degrees * std::numbers::pi / 180;
-      const Vec3 e(std::cos(angle), 0, std::sin(angle));
-      const Stencil x{{-1, height, 0}, {1, height, 0}, -e, e};  // they cross at their middles
-      EXPECT_NEAR(std::sqrt(distance2(closest_edge_edge, x)), height, 1e-12) << degrees;
-      // A tilt by h moves the crossing by about h / angle^2 of an edge: below 1e-4 degrees no difference of doubles is its slope.
-      if (degrees > 0.5e-4) expect_gradient(closest_edge_edge, x, std::to_string(degrees) + " degrees", 1e-9);
-      expect_well_formed(closest_edge_edge(x), 2);
+      const Vec3 e(std::cos(angle), 0, std::sin(angle)), turn(0.3, -0.7, 0.5);
+      Stencil x{{-0.7, height, 0}, {1.9, height, 0}, -0.4 * e, 1.7 * e};  // they cross at x = z = 0
+      for (Vec3& p : x) p = rotate(turn, p);
+      const Closest c = closest_edge_edge(x);
+      expect_well_formed(c, 2);
+      const Vec3 p = combine(c.weight, x);
+      EXPECT_NEAR(p.norm(), height, 1e-12) << degrees;
+      // Rounding of the coordinates alone moves the crossing by this much; and a difference step h by h height / angle^2.
+      const Real moved = 1e-15 * height / (angle * angle) + 1e-15 / angle;
+      const Real crossing[] = {1.9 / 2.6, 0.7 / 2.6, -1.7 / 2.1, -0.4 / 2.1};
+      for (int i = 0; i < 4 && moved < 0.1; ++i) EXPECT_NEAR(c.weight[i], crossing[i], 1e-8 + moved) << degrees;
+      if (1e-9 * height < 1e-3 * angle * angle) expect_gradient(closest_edge_edge, x, std::to_string(degrees) + " degrees", 1e-9);
       const Stencil shifted{{-1, height, 0}, {1, height, 0}, Vec3(1.5, 0, 0.2), Vec3(1.5, 0, 0.2) + e};  // beyond the end
       expect_gradient(closest_edge_edge, shifted, "shifted, " + std::to_string(degrees) + " degrees");
     }
