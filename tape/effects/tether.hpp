@@ -26,11 +26,14 @@ struct Tether {
   }
   TAPE_HD Stencil<2> stencil(int i) const { return {{elements[i].v, elements[i].anchor}}; }
   TAPE_HD bool anchored(int i) const { return elements[i].anchor != elements[i].v; }
+  TAPE_HD bool active(const StateView& s, int i) const { return s.grip_stiffness[elements[i].slot] > 0; }
   /// k (x_v - t) [N].
   TAPE_HD Vec3 pull(const StateView& s, int i) const {
     const Element& e = elements[i];
     return s.grip_stiffness[e.slot] * (s.x[e.v] - (anchored(i) ? s.x[e.anchor] : s.grip_target[e.slot]));
   }
+  /// Force [N] of the spring on its vertex.
+  TAPE_HD Vec3 reaction(const StateView& s, int i) const { return -pull(s, i); }
   TAPE_HD Real energy(const StateView& s, int i) const {
     const Real k = s.grip_stiffness[elements[i].slot];
     return k > 0 ? pull(s, i).squaredNorm() / (2 * k) : 0;

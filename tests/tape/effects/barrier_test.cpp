@@ -1,0 +1,128 @@
+#include "tape/effects/barrier.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/derivatives.hpp"
+#include "tests/support/effect_world.hpp"
+using namespace tape;
+
+namespace {
+constexpr Real kDhat = 1.8e-4;
+constexpr BarrierLaw kLaw{1, kDhat};
+constexpr Real kUnit = 4 / kDhat;  // weight that makes the energy B itself
+
+/// One pair with its vertices.
+struct Pair {
+  std::vector<Vec3> x;
+  ContactPair pair;
+  Barrier barrier;
+  Pair(PairKind kind, std::vector<Vec3> at, Real mollifier = 0)
+      : x(std::move(at)), pair{{0, 1, 2, 3}, kind, 0, 9e-5, kUnit, mollifier}, barrier{{&pair, 1}, kLaw} {}
+  Pair(const Pair&) = delete;
+  Pair& operator=(const Pair&) = delete;
+  StateView view() const {
+    StateView s{};
+    s.x = {x.data(), 4};
+    return s;
+  }
+};
+/// Edges of 2 mm that cross in the middle at the given angle, one above the other.
+std::vector<Vec3> crossing(Real angle, Real height) {
+  const Vec3 along = 1e-3 * Vec3(std::cos(angle), std::sin(angle), 0), up(0, 0, height);
+  return {up - Vec3(1e-3, 0, 0), up + Vec3(1e-3, 0, 0), -along, along};
+}
+constexpr Real kFade = 1e-3 * 4e-6 * 4e-6;  // of two edges of 2 mm
+}  // namespace
+
+TEST(BarrierLaw, HasThePublishedNumbers) {  // B and dB/dd for kappa 1: r = 1/4 gives (3/4 ln 4)^2 without offset
+  const Jet plain = kLaw.at(kDhat / 2, 0, kUnit), thick = kLaw.at(9e-5 + kDhat / 2, 9e-5, kUnit);
+  EXPECT_NEAR(plain.value, 1.0810192813, 1e-10);
+  EXPECT_NEAR(plain.slope, -5.0672459492e4, 1e-6);
+  EXPECT_NEAR(thick.value, 0.37579141545, 1e-11);
+  EXPECT_NEAR(thick.slope, -1.8032926703e4, 1e-6);
+}
+TEST(BarrierLaw, SlopeAndCurvatureAreTheDerivatives) {
+  for (Real xi : {0.0, 9e-5}) {
+    for (Real gap : {1e-3, 0.1, 0.5, 0.9, 0.999}) {
+      const Real d = xi + gap * kDhat, step = 1e-3 * std::min(gap, 1 - gap) * kDhat;
+      const auto value = [&](const Eigen::VectorXd& q) { return kLaw.at(q[0], xi, kUnit).value; };
+      const auto slope = [&](const Eigen::VectorXd& q) { return kLaw.at(q[0], xi, kUnit).slope; };
+      const Eigen::VectorXd at = Eigen::VectorXd::Constant(1, d);
+      const Jet b = kLaw.at(d, xi, kUnit);
+      EXPECT_NEAR(test::slope(value, at, step)[0], b.slope, 1e-7 * std::abs(b.slope)) << xi << " " << gap;
+      EXPECT_NEAR(test::slope(slope, at, step)[0], b.curvature, 1e-7 * std::abs(b.curvature)) << xi << " " << gap;
+    }
+  }
+}
+TEST(BarrierLaw, IsZeroAndSmoothAtItsReachAndInfiniteAtContact) {
+  const Real end = 9e-5 + kDhat;
+  EXPECT_EQ(kLaw.at(end, 9e-5, kUnit).value, 0);
+  EXPECT_LT(std::abs(kLaw.at(end * (1 - 1e-9), 9e-5, kUnit).slope) * kDhat, 1e-20);
+  EXPECT_TRUE(std::isinf(kLaw.at(9e-5, 9e-5, kUnit).value));
+  EXPECT_TRUE(std::isinf(kLaw.at(8e-5, 9e-5, kUnit).value));
+}
+TEST(BarrierLaw, KeepsItsDigitsNextToContact) {
+  // (d - xi)(d + xi) / (dhat (dhat + 2 xi)) with d = xi + g: r = g (2 xi + g) / (dhat (dhat + 2 xi))
+  const Real xi = 9e-5, gap = std::ldexp(1.0, -60), d = xi + gap, g = d - xi;
+  const Real r = g * (2 * xi + g) / (kDhat * (kDhat + 2 * xi)), expected = std::pow((r - 1) * std::log(r), 2);
+  EXPECT_NEAR(kLaw.at(d, xi, kUnit).value, expected, 1e-12 * expected);
+}
+
+TEST(Barrier, BetweenTwoPointsTheProjectedHessianIsThePositivePartOfTheExactOne) {
+  const Vec3 n = Vec3(1, 2, -2) / 3, far(-3e-3, 1e-3, 0), wide(-1e-3, -3e-3, 1e-3);
+  const Vec3 corner(0.01, 0.02, 0.03);
+  const Vec3 a = corner + far - n * far.dot(n), b = corner + wide - n * wide.dot(n);
+  for (Real gap : {0.05, 0.5, 0.95}) {
+    // the vertex stands above the corner, away from the triangle: outside of both edges' slabs
+    const Vec3 out = -(far - n * far.dot(n) + wide - n * wide.dot(n)).normalized();
+    const Pair p(PairKind::vertex_triangle, {corner + (9e-5 + gap * kDhat) * (0.6 * n + 0.8 * out), corner, a, b});
+    ASSERT_EQ(closest_vertex_triangle({p.x[0], p.x[1], p.x[2], p.x[3]}).free, 0);
+    const MatN<12, 12> exact = p.barrier.hessian(p.view(), 0, HessianMode::exact);
+    const MatN<12, 12> projected = p.barrier.hessian(p.view(), 0, HessianMode::projected);
+    EXPECT_LT((projected - test::psd_part(exact)).norm(), 1e-12 * projected.norm()) << gap;
+  }
+}
+TEST(Barrier, PushesApartAlongTheNormalWithItsNormalForce) {
+  const Real d = 9e-5 + kDhat / 2;
+  const Pair p(PairKind::vertex_triangle, {{2e-4, 2e-4, d}, {0, 0, 0}, {1e-3, 0, 0}, {0, 1e-3, 0}});
+  const VecN<12> g = p.barrier.gradient(p.view(), 0);
+  EXPECT_NEAR(p.barrier.normal_force(p.view(), 0), 1.8032926703e4, 1e-5);
+  EXPECT_NEAR(-g[2], 1.8032926703e4, 1e-5);          // the vertex goes up
+  EXPECT_NEAR(g[5], 0.6 * 1.8032926703e4, 1e-5);     // corners down by their barycentric coordinates
+  EXPECT_NEAR(g.head<2>().norm(), 0, 1e-9);
+}
+TEST(Barrier, ParallelEdgesFadeToNothing) {
+  const Real d = 9e-5 + kDhat / 2;
+  const Pair parallel(PairKind::edge_edge, crossing(0, d), kFade);
+  EXPECT_FALSE(parallel.barrier.active(parallel.view(), 0));
+  EXPECT_EQ(parallel.barrier.energy(parallel.view(), 0), 0);
+  Real last = 0.37579141545;  // unfaded
+  for (Real angle : {0.04, 0.02, 0.01, 1e-3, 1e-5}) {  // sin^2 = 1e-3 at 0.0316
+    const Pair p(PairKind::edge_edge, crossing(angle, d), kFade);
+    const Real energy = p.barrier.energy(p.view(), 0);
+    if (angle > 0.035) {
+      EXPECT_NEAR(energy, last, 1e-10);
+    } else {
+      EXPECT_LT(energy, last);
+    }
+    last = energy;
+  }
+  EXPECT_LT(last, 1e-6);
+}
+TEST(Barrier, OutOfReachAPairIsNotActive) {
+  const Pair in(PairKind::edge_edge, crossing(1, 9e-5 + 0.999 * kDhat), kFade), out(PairKind::edge_edge, crossing(1, 9e-5 + 1.001 * kDhat), kFade);
+  EXPECT_TRUE(in.barrier.active(in.view(), 0));
+  EXPECT_FALSE(out.barrier.active(out.view(), 0));
+}
+TEST(Barrier, IsNeededByAStripOrByTwoBodiesOfWhichOneMoves) {
+  Scene scene;
+  EXPECT_EQ(Barrier::needed(scene, {}), "");
+  scene.bodies.resize(2);
+  EXPECT_EQ(Barrier::needed(scene, {}), "");
+  scene.bodies[1].motion = Motion::dynamic;
+  EXPECT_EQ(Barrier::needed(scene, {}), "bodies");
+  scene.bodies.erase(scene.bodies.begin());
+  EXPECT_EQ(Barrier::needed(scene, {}), "");
+  scene.strips.resize(1);
+  EXPECT_EQ(Barrier::needed(scene, {}), "strip");
+}

@@ -1,0 +1,67 @@
+#include "tape/effects/body_inertia.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tape/effects/body_drive.hpp"
+#include "tests/support/effect_world.hpp"
+using namespace tape;
+
+// A body is many points: the energy must be the sum of m/2 |x - x_target|^2 over them, at any angle between pose and target.
+TEST(BodyInertia, IsTheSumOverThePointsOfTheBody) {
+  test::EffectWorld world(5);
+  std::vector<Vec3> points;
+  std::vector<Real> masses;
+  Vec3 centre = Vec3::Zero();
+  Real mass = 0;
+  for (int k = 0; k < 30; ++k) {
+    points.push_back(world.random_vector(0.02));
+    masses.push_back(world.random(1e-4, 1e-3));
+    mass += masses.back();
+    centre += masses.back() * points.back();
+  }
+  Mat3 second = Mat3::Zero();
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    points[k] -= centre / mass;
+    second += masses[k] * points[k] * points[k].transpose();
+  }
+  const BodyQuadratic body{mass, second};
+  for (Real angle : {0.0, 1e-6, 0.5, 3.14159}) {
+    const Pose target{rotation_exp(world.random_vector(3)), world.random_vector(0.1)};
+    const Pose at{rotation_exp(angle * world.random_vector(1).normalized()) * target.rotation, target.position + world.random_vector(1e-3)};
+    Real energy = 0;
+    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const Vec3 off = apply(at, points[k]) - apply(target, points[k]);
+      energy += masses[k] / 2 * off.squaredNorm();
+      force += masses[k] * off;
+      torque += masses[k] * Vec3(at.rotation * points[k]).cross(off);
+    }
+    EXPECT_NEAR(body.energy(at, target), energy, 1e-13 * energy);
+    const VecN<6> g = body.gradient(at, target);
+    EXPECT_LT((g.head<3>() - force).norm(), 1e-14 * force.norm() + 1e-20) << angle;
+    EXPECT_LT((g.tail<3>() - torque).norm(), 1e-12 * second.norm()) << angle;
+  }
+}
+TEST(BodyInertia, GoesWithTheInverseSquareOfTheTimeStep) {
+  test::EffectWorld world(6);
+  const test::Built<BodyInertia> built(world);
+  const Real energy = built.term.energy(world.view(), 0);
+  world.dt *= 0.5;
+  EXPECT_NEAR(built.term.energy(world.view(), 0), 4 * energy, 1e-12 * energy);
+}
+TEST(BodyDrive, UnderAHundredNewtonsALinkLagsATenthOfAMicrometreAtMost) {
+  test::EffectWorld world(7);
+  const test::Built<BodyDrive> built(world);
+  const BodyDrive::Element& e = built.elements[0];
+  Real radius = 0;
+  const BodyPart& part = world.assembly.bodies[static_cast<std::size_t>(e.body)];
+  for (int v = part.first_vertex; v < part.first_vertex + part.vertices; ++v)
+    radius = std::max(radius, world.assembly.local[static_cast<std::size_t>(v)].norm());
+  world.body = world.body_target;
+  const MatN<6, 6> h = built.term.hessian(world.view(), 0, HessianMode::exact);
+  VecN<6> load;
+  load << 100, 0, 0, 0, 0, 100 * radius;
+  const VecN<6> lag = h.ldlt().solve(load);
+  EXPECT_LE(lag.head<3>().norm(), 1.0000001e-7);
+  EXPECT_LE(lag.tail<3>().norm() * radius, 1.0000001e-7);
+}
