@@ -87,8 +87,8 @@ TEST(Barrier, PushesApartAlongTheNormalWithItsNormalForce) {
   const Pair p(PairKind::vertex_triangle, {{2e-4, 2e-4, d}, {0, 0, 0}, {1e-3, 0, 0}, {0, 1e-3, 0}});
   const VecN<12> g = p.barrier.gradient(p.view(), 0);
   EXPECT_NEAR(p.barrier.normal_force(p.view(), 0), 1.8032926703e4, 1e-5);
-  EXPECT_NEAR(-g[2], 1.8032926703e4, 1e-5);          // the vertex goes up
-  EXPECT_NEAR(g[5], 0.6 * 1.8032926703e4, 1e-5);     // corners down by their barycentric coordinates
+  EXPECT_NEAR(-g[2], 1.8032926703e4, 1e-5);       // the vertex goes up
+  EXPECT_NEAR(g[5], 0.6 * 1.8032926703e4, 1e-5);  // corners down by their barycentric coordinates
   EXPECT_NEAR(g.head<2>().norm(), 0, 1e-9);
 }
 TEST(Barrier, ParallelEdgesFadeToNothing) {
@@ -96,7 +96,7 @@ TEST(Barrier, ParallelEdgesFadeToNothing) {
   const Pair parallel(PairKind::edge_edge, crossing(0, d), kFade);
   EXPECT_FALSE(parallel.barrier.active(parallel.view(), 0));
   EXPECT_EQ(parallel.barrier.energy(parallel.view(), 0), 0);
-  Real last = 0.37579141545;  // unfaded
+  Real last = 0.37579141545;                           // unfaded
   for (Real angle : {0.04, 0.02, 0.01, 1e-3, 1e-5}) {  // sin^2 = 1e-3 at 0.0316
     const Pair p(PairKind::edge_edge, crossing(angle, d), kFade);
     const Real energy = p.barrier.energy(p.view(), 0);
@@ -110,7 +110,8 @@ TEST(Barrier, ParallelEdgesFadeToNothing) {
   EXPECT_LT(last, 1e-6);
 }
 TEST(Barrier, OutOfReachAPairIsNotActive) {
-  const Pair in(PairKind::edge_edge, crossing(1, 9e-5 + 0.999 * kDhat), kFade), out(PairKind::edge_edge, crossing(1, 9e-5 + 1.001 * kDhat), kFade);
+  const Pair in(PairKind::edge_edge, crossing(1, 9e-5 + 0.999 * kDhat), kFade),
+      out(PairKind::edge_edge, crossing(1, 9e-5 + 1.001 * kDhat), kFade);
   EXPECT_TRUE(in.barrier.active(in.view(), 0));
   EXPECT_FALSE(out.barrier.active(out.view(), 0));
 }

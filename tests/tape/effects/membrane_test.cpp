@@ -37,7 +37,8 @@ struct Cell {
     Vec3 sum = Vec3::Zero();
     for (int t = 0; t < 2; ++t)
       for (int k = 0; k < 3; ++k)
-        if (const int v = elements[static_cast<std::size_t>(t)].v[k]; v == 1 || v == 2) sum += membrane.gradient(view(), t).segment<3>(3 * k);
+        if (const int v = elements[static_cast<std::size_t>(t)].v[k]; v == 1 || v == 2)
+          sum += membrane.gradient(view(), t).segment<3>(3 * k);
     return sum.norm();
   }
 };

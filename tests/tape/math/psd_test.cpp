@@ -19,9 +19,8 @@ MatN<N, N> with_eigenvalues(const VecN<N>& values, std::mt19937_64& generator) {
   const MatN<N, N> full = Q * values.asDiagonal() * Q.transpose();
   return 0.5 * (full + full.transpose());
 }
-const Vec3 kSpectra[] = {{1, 2, 3},       {-1, 2, 3},    {-3, -2, 1}, {-1, -2, -3}, {1, 1, 1},     {1, 1, -1},
-                         {-1, -1, 5},     {0, 0, 1},     {0, 0, -1},  {0, 0, 0},    {1e-9, 1, 1e9}, {-1e-9, 1, 1e9},
-                         {1, 1 + 1e-12, 2}, {-1e9, 1e-3, 1}};
+const Vec3 kSpectra[] = {{1, 2, 3}, {-1, 2, 3}, {-3, -2, 1}, {-1, -2, -3},   {1, 1, 1},       {1, 1, -1},        {-1, -1, 5},
+                         {0, 0, 1}, {0, 0, -1}, {0, 0, 0},   {1e-9, 1, 1e9}, {-1e-9, 1, 1e9}, {1, 1 + 1e-12, 2}, {-1e9, 1e-3, 1}};
 }  // namespace
 
 TEST(Psd, TheEigenDecompositionGivesTheMatrixBack) {
