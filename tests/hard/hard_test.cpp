@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 
@@ -45,10 +46,9 @@ TEST_P(Hard, KeepsItsPromises) {
               broken.empty() ? "ok" : "BROKEN");
   for (std::size_t k = 0; k < std::min<std::size_t>(3, broken.size()); ++k) ADD_FAILURE() << hard.what << ": " << broken[k];
 }
-INSTANTIATE_TEST_SUITE_P(Cases, Hard, testing::ValuesIn(test::hard_cases()), [](const auto& info) {
-  std::string name = info.param.name;
-  for (char& c : name)
-    if (c == '-') c = 'm';
+INSTANTIATE_TEST_SUITE_P(Cases, Hard, testing::ValuesIn(test::hard_cases()), [](const auto& hard) {
+  std::string name = hard.param.name;
+  std::replace(name.begin(), name.end(), '-', 'm');
   return name;
 });
 

@@ -3,7 +3,7 @@
 
 #include <sstream>
 
-#include "tests/apps/tapesim/program.hpp"
+#include "tests/support/program.hpp"
 
 using namespace tape::test;
 using testing::ContainsRegex;

@@ -19,7 +19,7 @@ World strip_world() {
   setup.scene.name = "fake";
   setup.scene.time = {.dt = kDt, .duration = 0.1};
   setup.scene.films = {{.name = "film"}};
-  setup.scene.strips.push_back({.mesh = {.length = 0.038, .cells_across = 1}});
+  setup.scene.strips.emplace_back().mesh = {.length = 0.038, .cells_across = 1};
   setup.scene.grips.push_back({.name = "hand",
                                .what = {.object = "tape", .vertices = {0}, .points = {}},
                                .to = {},
@@ -33,7 +33,8 @@ class FakeStepper : public Stepper {
  public:
   explicit FakeStepper(std::function<void(State&, StepReport&)> act) : act_(std::move(act)) {}
   StepReport step(State& state) override {
-    StepReport report{.dt = kDt};
+    StepReport report;
+    report.dt = kDt;
     report.grip_force = {Vec3::Zero()};
     report.min_gap = 1e-4;
     const State before = state;
@@ -146,8 +147,11 @@ TEST(Conditions, EachLimitThatIsNotReachedShows) {
     });
     const std::vector<Condition> conditions = check_conditions(world, log);
     EXPECT_FALSE(condition(conditions, name).met) << name;
-    for (const Condition& c : conditions)
-      if (c.name != name && c.name != "energy_rise") EXPECT_TRUE(c.met) << c.name << " while " << name << " is broken";
+    for (const Condition& c : conditions) {
+      if (c.name != name && c.name != "energy_rise") {
+        EXPECT_TRUE(c.met) << c.name << " while " << name << " is broken";
+      }
+    }
   }
 }
 TEST(Distribution, RanksAreTheNearest) {
