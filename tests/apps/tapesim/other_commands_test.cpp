@@ -3,7 +3,7 @@
 
 #include <sstream>
 
-#include "tests/support/program.hpp"
+#include "tests/apps/tapesim/program.hpp"
 
 using namespace tape::test;
 using testing::ContainsRegex;

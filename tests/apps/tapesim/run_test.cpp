@@ -8,7 +8,7 @@
 
 #include "cosim/run/state_file.hpp"
 #include "tape/step/stepper.hpp"
-#include "tests/support/program.hpp"
+#include "tests/apps/tapesim/program.hpp"
 
 using namespace tape::test;
 using nlohmann::json;

@@ -1,4 +1,4 @@
-#include "tests/support/program.hpp"
+#include "tests/apps/tapesim/program.hpp"
 
 #include <fcntl.h>
 #include <sys/resource.h>
