@@ -27,7 +27,10 @@ class Handle {
 };
 
 /// The library prints its own messages unless told otherwise.
-void be_quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+void be_quiet() {
+  H5dont_atexit();  // its clean-up crashes where a file could not be closed for want of space
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
 
 hsize_t product(const Shape& shape) { return std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>()); }
 

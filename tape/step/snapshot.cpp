@@ -25,7 +25,10 @@ class Handle {
 };
 
 /// HDF5 prints its own stack of errors otherwise; ours name the file.
-void silence_hdf5() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+void silence_hdf5() {
+  H5dont_atexit();  // its clean-up crashes where a file could not be closed for want of space
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
 
 constexpr const char* kReals = "reals";
 constexpr const char* kIntegers = "integers";
