@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "tape/math/rotation.hpp"
 
@@ -50,7 +51,7 @@ Real EnergyLedger::body_work(const State& state) const {
 EnergyLedger::Entry EnergyLedger::after(const State& state, const StepReport& report) {
   std::vector<Real> energies;
   for (const EffectReport& effect : report.effects) energies.push_back(conservative(effect) ? effect.energy : 0);
-  const bool first = first_energies_.empty();
+  const bool first = !std::exchange(started_, true);
   if (first) {
     first_energies_ = energies;
     first_energy_ = report.kinetic;

@@ -28,6 +28,7 @@ class EnergyLedger {
   Drive target_;                   // of the step
   Real grip_work_ = 0, work_ = 0;  // [J] of this step, of all
   Real first_energy_ = 0, scale_ = 0;
+  bool started_ = false;
   std::vector<Real> first_energies_;  // [effects] J after the first step
 };
 }  // namespace cosim

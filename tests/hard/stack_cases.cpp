@@ -117,7 +117,9 @@ void slips(const Simulation& s, std::vector<std::string>& broken) {
 
 std::vector<HardCase> stack_cases() {
   std::vector<HardCase> cases = {
-      {"HC6_frictionless_stack", "nothing but symmetry holds three sheets in place", 1, false, frictionless_stack, no_drift},
+      // Vertices of one sheet slide over those of the next without friction, through a barrier that is not convex across them:
+      // single steps gain up to 1.8e-6 of the scale, at any tolerance of Newton (measured from 1e-5 to 1e-7 m/s).
+      {"HC6_frictionless_stack", "nothing but symmetry holds three sheets in place", 1, false, frictionless_stack, no_drift, 5e-6},
       {"HC6_stack_out_of_reach", "sheets a hair beyond the barrier's reach, no gravity", 0.05, false, floating_stack, two_iterations},
       {"HC20_mass_ratio_1000", "a block a thousand times as heavy as the strip under it", 0.2, false, [] { return heavy_on_light(0.13); }},
       {"HC20_mass_ratio_30000", "4 kg on a strip of 0.13 g", 0.1, false, [] { return heavy_on_light(4); }},
