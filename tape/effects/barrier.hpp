@@ -82,11 +82,11 @@ struct Barrier {
     return h;
   }
 
-  /// max(b'', 0) grad d grad d^T. The curvature of d itself has the factor b' <= 0: for two points it is negative and the
+  /// b'' grad d (grad d)^T; b is convex. The curvature of d itself has the factor b' <= 0: for two points it is negative and the
   /// projection drops all of it, for the other features nearly all.
   TAPE_HD static MatN<12, 12> projected_hessian(const PairState& p, const Jet& b) {
     const Vec3 n = p.normal();
-    const Mat3 nn = std::fmax(b.curvature, 0.0) * n * n.transpose();
+    const Mat3 nn = b.curvature * n * n.transpose();
     MatN<12, 12> h;
     for (int k = 0; k < 4; ++k)
       for (int l = 0; l < 4; ++l) h.block<3, 3>(3 * k, 3 * l) = p.closest.weight[k] * p.closest.weight[l] * nn;

@@ -120,7 +120,8 @@ class Exchange {
     for (int i = 0; i < m; ++i)
       for (int j = 0; j < m; ++j)
         K(s.inner[static_cast<std::size_t>(i)], s.inner[static_cast<std::size_t>(j)]) = (own(i, j) + own(j, i)) / 2;
-    return (1 - kMeanShare) * psd_part(K) + kMeanShare * mean_normal_stiffness(mesh_[t]);
+    K = (1 - kMeanShare) * psd_part(K) + kMeanShare * mean_normal_stiffness(mesh_[t]);
+    return 0.5 * (K + K.transpose());
   }
 
  private:

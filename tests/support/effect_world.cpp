@@ -67,10 +67,10 @@ void EffectWorld::add_bodies() {
     const Vec3 far(0, 0, 0.1);
     add_vertices({far + random_vector(0.01), far + random_vector(0.01), far + random_vector(0.01), far + random_vector(0.01)});
     assembly.local.resize(assembly.x.size(), Vec3::Zero());
-    for (int v = part.first_vertex; v < part.first_vertex + 4; ++v) assembly.local[static_cast<std::size_t>(v)] = random_vector(0.01);
+    for (int v = part.first_vertex; v < part.first_vertex + 4; ++v) assembly.local[static_cast<std::size_t>(v)] = random_vector(0.5);
     part.block = assembly.blocks;
     assembly.blocks += 2;
-    const Vec3 spread(random(1e-4, 1e-3), random(1e-4, 1e-3), random(1e-4, 1e-3));
+    const Vec3 spread(random(0.3, 1), random(0.3, 1), random(0.3, 1));
     const Mat3 R = rotation_exp(random_vector(3));
     if (motion == Motion::dynamic) part.mass = {0.02, 0.02 * R * spread.cwiseProduct(spread).asDiagonal() * R.transpose()};
     assembly.bodies.push_back(part);

@@ -54,6 +54,10 @@ TEST(BarrierLaw, SlopeAndCurvatureAreTheDerivatives) {
     }
   }
 }
+TEST(BarrierLaw, IsConvexAllTheWay) {
+  for (Real xi : {0.0, 9e-5, 1e-2})
+    for (int k = 1; k < 1000; ++k) EXPECT_GT(kLaw.at(xi + k * kDhat / 1000, xi, kUnit).curvature, 0) << xi << " " << k;
+}
 TEST(BarrierLaw, IsZeroAndSmoothAtItsReachAndInfiniteAtContact) {
   const Real end = 9e-5 + kDhat;
   EXPECT_EQ(kLaw.at(end, 9e-5, kUnit).value, 0);
