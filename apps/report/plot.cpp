@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "apps/video/process.hpp"
@@ -45,7 +46,8 @@ std::string script(const Plot& plot, const std::string& terminal, const std::str
   std::string text = "set terminal " + terminal + "\nset output " + quoted(output) + '\n';
   text += "set title " + quoted(plot.title) + " noenhanced\nset xlabel " + quoted(plot.x_label) + " noenhanced\n";
   text += "set ylabel " + quoted(plot.y_label) +
-          " noenhanced\nset logscale xy\nset grid\nset key bottom left\nset offsets graph 0.05, graph 0.25, graph 0.1, graph 0.05\n";
+          " noenhanced\nset logscale xy\nset format '%g'\nset grid\nset key bottom left\nset offsets graph 0.05, graph 0.25, graph 0.1, "
+          "graph 0.05\n";
   text += data_block("all", all) + data_block("front", front);
   text += "plot $all using 1:2 with points pointtype 7 pointsize 0.8 linecolor rgb '#7a8ba8' title 'runs'";
   if (!front.empty())
@@ -63,11 +65,17 @@ void run_gnuplot(const std::string& text) {
 
 std::vector<bool> pareto_front(const std::vector<Real>& cost, const std::vector<Real>& error) {
   TAPE_CHECK(cost.size() == error.size());
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < cost.size(); ++i)
+    if (std::isfinite(cost[i]) && std::isfinite(error[i])) order.push_back(i);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return std::pair(cost[a], error[a]) < std::pair(cost[b], error[b]); });
   std::vector<bool> front(cost.size());
-  for (std::size_t i = 0; i < cost.size(); ++i) {
-    front[i] = std::isfinite(cost[i]) && std::isfinite(error[i]);
-    for (std::size_t j = 0; j < cost.size() && front[i]; ++j)
-      if (cost[j] <= cost[i] && error[j] <= error[i] && (cost[j] < cost[i] || error[j] < error[i])) front[i] = false;
+  Real best = std::numeric_limits<Real>::infinity();
+  for (std::size_t i : order) {
+    if (!(error[i] < 0.99 * best)) continue;
+    front[i] = true;
+    best = error[i];
   }
   return front;
 }

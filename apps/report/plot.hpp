@@ -17,7 +17,8 @@ struct Plot {
   std::vector<PlotPoint> points;
 };
 
-/// The points that no other beats in both respects (less is better), in the order given. Points that are not finite are never on the front.
+/// The points worth their cost: from the cheapest on, each that brings the error down by 1 % at least. Points that are not finite are
+/// never among them.
 std::vector<bool> pareto_front(const std::vector<Real>& cost, const std::vector<Real>& error);
 
 /// Draws `base`.png and `base`.svg with gnuplot.

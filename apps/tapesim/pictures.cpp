@@ -94,6 +94,7 @@ class Studio {
     }
     const bool strain = params_.view.color == ColorBy::strain;
     bar_ = render::bar_over(extremes, strain ? "largest strain" : "contact force", strain ? "" : "N");
+    bar_.low = 0;  // both are magnitudes
   }
 
   render::Camera make_camera() const {

@@ -22,17 +22,18 @@ Progress::~Progress() {
 
 void Progress::update(int done, const std::string& note) {
   const double share = std::min(1.0, static_cast<double>(done) / total_);
-  const std::string left = done > 0 && done < total_ ? ", " + duration_text(seconds_since(start_) * (1 - share) / share) + " left" : "";
+  std::string text = note;
+  if (done > 0 && done < total_) text += (note.empty() ? "" : ", ") + duration_text(seconds_since(start_) * (1 - share) / share) + " left";
   if (terminal_) {
     if (done < total_ && seconds_since(last_) < 0.1) return;
     const auto filled = static_cast<std::size_t>(30 * share);
-    fmt::print(stderr, "\r{} [{:<30}] {:3.0f} % {}/{} {}{}\033[K", what_, std::string(filled, '#'), 100 * share, done, total_, note, left);
+    fmt::print(stderr, "\r{} [{:<30}] {:3.0f} % {}/{} {}\033[K", what_, std::string(filled, '#'), 100 * share, done, total_, text);
     std::fflush(stderr);
     open_ = true;
   } else {
     const int tenth = static_cast<int>(10 * share + 1e-9);
     if (tenth == tenth_ && seconds_since(last_) < 30) return;
-    fmt::print(stderr, "{}: {}/{} ({:.0f} %) {}{}\n", what_, done, total_, 100 * share, note, left);
+    fmt::print(stderr, "{}: {}/{} ({:.0f} %) {}\n", what_, done, total_, 100 * share, text);
     tenth_ = tenth;
   }
   last_ = Clock::now();

@@ -67,11 +67,13 @@ void find_errors(const Study& study, std::vector<StudyRun>& runs) {
 
 report::Table make_table(const Study& study, const std::vector<StudyRun>& runs, std::string (*number)(double)) {
   report::Table table;
+  table.columns.push_back("run");
   for (const auto& [key, values] : study.grid) table.columns.push_back(key);
   for (const char* column : {"error", "seconds", "newton_per_step", "conditions_not_met", "pareto", "note"})
     table.columns.push_back(column);
   for (const StudyRun& run : runs) {
-    std::vector<std::string> row = run.values;
+    std::vector<std::string> row = {std::to_string(table.rows.size() + 1)};
+    row.insert(row.end(), run.values.begin(), run.values.end());
     const std::string note = run.failure.empty() && std::isnan(run.error) ? "finest" : run.failure;
     for (const std::string& cell : {std::isnan(run.error) ? "" : number(run.error), number(run.seconds), number(run.newton),
                                     std::to_string(run.unmet), std::string(run.pareto ? "*" : ""), note})
@@ -110,8 +112,12 @@ std::string conclusion(const Study& study, const std::vector<StudyRun>& runs) {
 void write_files(const Study& study, const std::vector<StudyRun>& runs, const std::filesystem::path& folder) {
   cosim::write_text(folder / "study.csv", report::to_csv(make_table(study, runs, tape::to_text)));
   report::Plot plot{"study " + study.name, "time [s]", error_label(study.reference), {}};
-  for (const StudyRun& run : runs)
-    if (run.measurable() && !std::isnan(run.error)) plot.points.push_back({run.seconds, run.error, label(study, run), run.pareto});
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const StudyRun& run = runs[i];
+    const std::string number = std::to_string(i + 1);
+    if (run.measurable())
+      plot.points.push_back({run.seconds, run.error, run.pareto ? number + ": " + label(study, run) : number, run.pareto});
+  }
   report::write_plot(plot, folder / "study");
 }
 

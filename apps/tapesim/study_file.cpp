@@ -45,6 +45,7 @@ Study load_study(const std::filesystem::path& path, const std::vector<std::strin
   const cosim::Reader scene = file["scene"];
   study.scene = cosim::find_file(path, "scenes", scene.text());
   if (study.scene.empty()) scene.fail("no such scene beside the study, above it, or in data/scenes");
+  if (std::filesystem::equivalent(study.scene, path)) scene.fail("is the study itself; say scenes/" + scene.text());
   const cosim::Reader fixed = file["set"], grid = file["grid"];
   for (const std::string& key : fixed.keys()) study.overrides.push_back(key + "=" + fixed[key].text());
   study.overrides.insert(study.overrides.end(), more_overrides.begin(), more_overrides.end());

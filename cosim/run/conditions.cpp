@@ -1,11 +1,18 @@
 #include "cosim/run/conditions.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <limits>
 
 namespace cosim {
 namespace {
-Condition at_most(const std::string& name, Real value, Real limit) { return {name, value, "<= " + to_text(limit), value <= limit}; }
+/// Six digits, for people.
+std::string short_text(Real value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+Condition at_most(const std::string& name, Real value, Real limit) { return {name, value, "<= " + short_text(limit), value <= limit}; }
 Condition none(const std::string& name, Real value) { return {name, value, "== 0", value == 0}; }
 
 template <class F>

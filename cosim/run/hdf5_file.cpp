@@ -1,7 +1,5 @@
 #include "cosim/run/hdf5_file.hpp"
 
-#include <cerrno>
-#include <cstring>
 #include <functional>
 #include <numeric>
 #include <utility>
@@ -51,8 +49,10 @@ hid_t row_layout(const Shape& row_shape) {
 
 Hdf5Writer::Hdf5Writer(const std::filesystem::path& name) : file_(name) {
   be_quiet();
-  errno = 0;
-  id_ = H5Fcreate(file_.temporary().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  constexpr std::size_t kGrowth = 1 << 20;  // [bytes]
+  const Handle memory(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_fapl_core(memory, kGrowth, false);
+  id_ = H5Fcreate(file_.name().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, memory);
   require(id_ >= 0);
 }
 
@@ -61,12 +61,10 @@ Hdf5Writer::~Hdf5Writer() {
 }
 
 void Hdf5Writer::require(bool success) const {
-  if (!success)
-    throw tape::InputError("cannot write " + file_.name().string() + ": " + (errno ? std::strerror(errno) : "the HDF5 library refuses"));
+  if (!success) throw tape::InputError("cannot write " + file_.name().string() + ": the HDF5 library refuses, perhaps for lack of memory");
 }
 
 void Hdf5Writer::write(const std::string& array, const void* values, hid_t type, const Shape& shape) {
-  errno = 0;
   const Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
   const Handle data(H5Dcreate2(id_, array.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
   require(data >= 0);
@@ -74,7 +72,6 @@ void Hdf5Writer::write(const std::string& array, const void* values, hid_t type,
 }
 
 void Hdf5Writer::append(const std::string& array, const void* row, hid_t type, const Shape& row_shape) {
-  errno = 0;
   Shape size = row_shape, start(row_shape.size() + 1, 0);
   if (H5Lexists(id_, array.c_str(), H5P_DEFAULT) <= 0) {
     Shape unlimited = row_shape;
@@ -122,7 +119,6 @@ void Hdf5Writer::append(const std::string& array, const std::vector<int>& row, c
 }
 
 void Hdf5Writer::write_text(const std::string& attribute, const std::string& text) {
-  errno = 0;
   const Handle type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate(H5S_SCALAR), H5Sclose);
   H5Tset_size(type, text.size() + 1);
   H5Tset_cset(type, H5T_CSET_UTF8);
@@ -130,15 +126,18 @@ void Hdf5Writer::write_text(const std::string& attribute, const std::string& tex
   require(written >= 0 && H5Awrite(written, type, text.c_str()) >= 0);
 }
 
-void Hdf5Writer::flush() {
-  errno = 0;
+void Hdf5Writer::reserve() {
   require(H5Fflush(id_, H5F_SCOPE_LOCAL) >= 0);
+  const ssize_t bytes = H5Fget_file_image(id_, nullptr, 0);
+  require(bytes > 0);
+  file_.reserve(static_cast<std::size_t>(bytes));
 }
 
 void Hdf5Writer::commit() {
-  flush();
-  const hid_t id = std::exchange(id_, -1);
-  require(H5Fclose(id) >= 0);
+  reserve();
+  std::string image(static_cast<std::size_t>(H5Fget_file_image(id_, nullptr, 0)), '\0');
+  require(H5Fget_file_image(id_, image.data(), image.size()) > 0);
+  file_.write(image);
   file_.commit();
 }
 

@@ -11,7 +11,8 @@ namespace cosim {
 /// Shape of an array, or of one row of a growing array.
 using Shape = std::vector<hsize_t>;
 
-/// An HDF5 file being written, under a temporary name until `commit`. Every failure is an InputError naming the file and the reason.
+/// An HDF5 file that grows in memory and is written by `commit`: the library itself crashes on a disk that is full. Every failure is an
+/// InputError naming the file and the reason.
 class Hdf5Writer {
  public:
   explicit Hdf5Writer(const std::filesystem::path& name);
@@ -26,15 +27,15 @@ class Hdf5Writer {
   void append(const std::string& array, const std::vector<double>& row, const Shape& row_shape);
   void append(const std::string& array, const std::vector<float>& row, const Shape& row_shape);
   void append(const std::string& array, const std::vector<int>& row, const Shape& row_shape);
-  /// Hands everything to the disk, so that a full one shows now.
-  void flush();
+  /// Takes the room on the disk that the file needs so far, so that a full one shows now and not at the end.
+  void reserve();
   void commit();
 
  private:
   void write(const std::string& array, const void* values, hid_t type, const Shape& shape);
   void append(const std::string& array, const void* row, hid_t type, const Shape& row_shape);
   void require(bool success) const;
-  NewFile file_;
+  TextFile file_;
   hid_t id_ = -1;
 };
 

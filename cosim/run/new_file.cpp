@@ -1,5 +1,6 @@
 #include "cosim/run/new_file.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -40,6 +41,10 @@ TextFile::~TextFile() {
 
 void TextFile::write(std::string_view text) {
   if (std::fwrite(text.data(), 1, text.size(), stream_) != text.size()) fail(file_.name(), errno);
+}
+
+void TextFile::reserve(std::size_t bytes) {
+  if (const int error = posix_fallocate(fileno(stream_), 0, static_cast<off_t>(bytes))) fail(file_.name(), error);
 }
 
 void TextFile::commit() {

@@ -22,7 +22,7 @@ class NewFile {
   std::filesystem::path name_, temporary_;
 };
 
-/// Text written bit by bit to a NewFile. Every failure to write is an InputError naming the file and the reason.
+/// Text or bytes, written bit by bit to a NewFile. Every failure to write is an InputError naming the file and the reason.
 class TextFile {
  public:
   explicit TextFile(const std::filesystem::path& name);
@@ -30,7 +30,10 @@ class TextFile {
   TextFile(const TextFile&) = delete;
   TextFile& operator=(const TextFile&) = delete;
   void write(std::string_view text);
+  /// Makes sure that the disk has room for so many bytes in all.
+  void reserve(std::size_t bytes);
   void commit();
+  const std::filesystem::path& name() const { return file_.name(); }
 
  private:
   NewFile file_;

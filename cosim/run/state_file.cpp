@@ -126,7 +126,7 @@ void StateWriter::add(const RecordedFrame& frame) {
   if (!frame.x.empty()) file_.append("x", flat<double>(frame.x), {frame.x.size(), 3});
   if (!poses.empty()) file_.append("pose", poses, {frame.bodies.size(), 12});
   file_.append("contact_force", std::vector<float>(frame.contact_force.begin(), frame.contact_force.end()), {frame.contact_force.size()});
-  file_.flush();
+  file_.reserve();
 }
 
 StateReader::StateReader(const std::filesystem::path& name) : file_(name) {

@@ -36,11 +36,12 @@ class PlotFile : public testing::Test {
 };
 }  // namespace
 
-TEST(ParetoFront, HoldsWhatNothingElseBeatsInBothRespects) {
+TEST(ParetoFront, HoldsWhatBringsTheErrorDownForItsCost) {
   EXPECT_EQ(pareto_front({1, 2, 3, 4, 2}, {4, 3, 3, 1, 5}), (std::vector<bool>{true, true, false, true, false}));
 }
-TEST(ParetoFront, KeepsEqualPointsAndNeverOneThatIsNotFinite) {
-  EXPECT_EQ(pareto_front({1, 1, 0.1}, {1, 1, std::nan("")}), (std::vector<bool>{true, true, false}));
+TEST(ParetoFront, LeavesOutASavingBelowOnePerCentAndWhatIsNotFinite) {
+  const Real nan = std::nan("");
+  EXPECT_EQ(pareto_front({1, 2, 3, 0.1, nan}, {1, 0.995, 0.98, nan, 0.1}), (std::vector<bool>{true, false, true, false, false}));
 }
 TEST_F(PlotFile, IsMadeAsPngAndSvgWithTheParetoFrontMarked) {
   write_plot(kPlot, folder / "study");

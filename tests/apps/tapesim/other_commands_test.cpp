@@ -84,8 +84,8 @@ TEST_F(StudyCommand, AgainstAClosedFormPrintsATableAndLeavesCsvAndPlots) {
   std::istringstream csv(read(folder / "out" / "study.csv"));
   std::string line;
   std::getline(csv, line);
-  EXPECT_THAT(line, testing::StartsWith("time.dt,strip.cells_across,error,seconds"));
-  for (const char* start : {"0.05,1,", "0.05,2,", "0.025,1,", "0.025,2,"}) {
+  EXPECT_THAT(line, testing::StartsWith("run,time.dt,strip.cells_across,error,seconds"));
+  for (const char* start : {"1,0.05,1,", "2,0.05,2,", "3,0.025,1,", "4,0.025,2,"}) {
     std::getline(csv, line);
     EXPECT_THAT(line, testing::StartsWith(start));
   }
