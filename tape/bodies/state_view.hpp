@@ -6,6 +6,7 @@ namespace tape {
 /// What an effect sees of the world at a trial configuration. All arrays are memory of the side that runs.
 struct StateView {
   Real dt;                          ///< [s]
+  bool overshot;                    ///< the last Newton update raised the energy and was shortened
   Span<const Vec3> x;               ///< [nv] m, now
   Span<const Vec3> x_start;         ///< [nv] m, at the start of the step
   Span<const Vec3> x_tilde;         ///< [nv] m, where inertia alone would take strip vertices (without gravity)

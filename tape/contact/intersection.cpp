@@ -101,7 +101,7 @@ void check_start(const std::vector<Vec3>& x, const SurfaceMesh& mesh, Real dhat)
   using on_cpu::Buffer;
   const Buffer<Vec3> positions(x);
   const Buffer<VertexOwner> owner(std::vector<VertexOwner>(x.size()));  // as if nothing moved
-  on_cpu::ContactSearch search(mesh, dhat);
+  on_cpu::ContactSearch search(mesh, dhat, dhat);
   search.update({positions.span(), owner.span(), {}, {}}, 0);
   const SmallestGap smallest = on_cpu::smallest_gap(search.candidates(), positions.span());
   if (smallest.gap > 0) return;

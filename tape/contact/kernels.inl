@@ -15,7 +15,8 @@ struct SurfaceView {
   Span<const SurfaceTriangle> triangles;
   Span<const int> vertex_carrier, edge_carrier, triangle_carrier;  ///< body that carries the whole primitive, kFixed or kFree
   int materials;
-  Real dhat;  ///< [m]
+  Real dhat;   ///< [m] reach of vertex-triangle pairs beyond xi
+  Real guard;  ///< [m] reach of the barrier of edge-edge pairs and between a rim and an open surface
   TAPE_HD Real xi(const SurfaceEdge& e) const { return std::max(vertices[e.v[0]].xi, vertices[e.v[1]].xi); }
   TAPE_HD Real xi(const SurfaceTriangle& t) const {
     return std::max(vertices[t.v[0]].xi, std::max(vertices[t.v[1]].xi, vertices[t.v[2]].xi));
@@ -78,7 +79,7 @@ struct MakeEdges {
   TAPE_HD void operator()(int i) const {
     const SurfaceEdge& e = s.edges[i];
     const Ball &b0 = ball[e.v[0]], &b1 = ball[e.v[1]];
-    const Real beyond = s.xi(e) + s.dhat / 2;
+    const Real beyond = s.xi(e) + s.guard / 2;
     shapes[i] = {.middle = 0.5 * (b0.centre + b1.centre),
                  .half = 0.5 * (b1.centre - b0.centre),
                  .reach = (std::max(b0.radius, b1.radius) + beyond) * (1 + kRounding),
@@ -137,8 +138,10 @@ struct VertexQuery {
             .kind = PairKind::vertex_triangle,
             .interface = s.interface(v, b.v[0]),
             .xi = a.xi + s.xi(b),
-            .weight = std::min(a.area, b.area),
-            .mollifier = 0};
+            .dhat = a.rim && b.open ? s.guard : s.dhat,
+            .weight = std::min(a.area, b.mean_area),
+            .mollifier = 0,
+            .sharing = b.sharing};
   }
 };
 
@@ -151,7 +154,7 @@ struct EdgeQuery {
   template <class F>
   TAPE_HD void visit(int i, F&& f) const {
     const EdgeShape a = edges[i];
-    const Box box = inflated(joined(trust[a.v[0]], trust[a.v[1]]), s.xi(s.edges[i]) + s.dhat / 2);
+    const Box box = inflated(joined(trust[a.v[0]], trust[a.v[1]]), s.xi(s.edges[i]) + s.guard / 2);
     tree.visit(query_box(box, i + 1, a.carrier == kFixed), [&](int j) {
       const EdgeShape& b = edges[j];
       const bool apart = a.v[0] != b.v[0] && a.v[0] != b.v[1] && a.v[1] != b.v[0] && a.v[1] != b.v[1];
@@ -179,8 +182,10 @@ struct EdgeQuery {
             .kind = PairKind::edge_edge,
             .interface = s.interface(a.v[0], b.v[0]),
             .xi = s.xi(a) + s.xi(b),
+            .dhat = s.guard,
             .weight = std::min(a.area, b.area),
-            .mollifier = 1e-3 * a.length2 * b.length2};
+            .mollifier = 1e-3 * a.length2 * b.length2,
+            .sharing = {}};
   }
 };
 

@@ -1,4 +1,6 @@
 #pragma once
+#include <cstdint>
+
 #include "tape/core/types.hpp"
 #include "tape/math/distance.hpp"
 
@@ -6,14 +8,22 @@ namespace tape {
 /// Vertex against triangle (v[0]; v[1..3]) or edge against edge (v[0..1]; v[2..3]).
 enum class PairKind : int { vertex_triangle, edge_edge };
 
+/// Which of a triangle's edges and vertices other triangles have too: the barrier must count each place of a surface once.
+struct Sharing {
+  std::uint16_t edge[3] = {1, 1, 1};    ///< triangles at the edge from vertex k to k + 1
+  std::uint16_t vertex[3] = {0, 0, 0};  ///< triangles around vertex k, 0 on an open rim
+};
+
 /// Two surface primitives that may touch. Its constants come with it, so that effects need no tables.
 struct ContactPair {
   int v[4];  ///< vertices
   PairKind kind;
-  int interface;   ///< material of the first times the number of materials plus that of the second, ordered: first <= second
-  Real xi;         ///< [m]   sum of the half-thicknesses: surfaces touch at this distance
-  Real weight;     ///< [m^2] smaller of the two primitives' areas (facts: cgq)
-  Real mollifier;  ///< [m^4] edge-edge: 1e-3 |ea|^2 |eb|^2 at rest; below this squared cross product the pair fades out
+  int interface;    ///< material of the first times the number of materials plus that of the second, ordered: first <= second
+  Real xi;          ///< [m]   sum of the half-thicknesses: surfaces touch at this distance
+  Real dhat;        ///< [m]   reach of the barrier beyond xi
+  Real weight;      ///< [m^2] surface that the pair stands for
+  Real mollifier;   ///< [m^4] edge-edge: 1e-3 |ea|^2 |eb|^2 at rest; below this squared cross product the pair fades out
+  Sharing sharing;  ///< of the triangle
 };
 
 TAPE_HD inline Closest closest(PairKind kind, const Vec3 (&x)[4]) {

@@ -19,8 +19,9 @@ struct SearchReport {
 /// edge-edge, each sorted by the primitives' ids) depends on nothing but the pairs themselves. README.md has the reasoning.
 class ContactSearch {
  public:
-  /// @param dhat  [m] activation distance beyond xi
-  ContactSearch(const SurfaceMesh& mesh, Real dhat);
+  /// @param dhat   [m] activation distance beyond xi
+  /// @param guard  [m] that of edge-edge pairs and of the barrier at open rims, <= dhat
+  ContactSearch(const SurfaceMesh& mesh, Real dhat, Real guard);
   /// Makes the candidates good for the whole of `paths`.
   /// @param margin  [m] by which the boxes of a rebuild exceed the paths: larger is reused longer, and finds more
   /// @return whether they had to be rebuilt

@@ -1,14 +1,14 @@
 #pragma once
 
 namespace tape::TAPE_SIDE {
-inline ContactSearch::ContactSearch(const SurfaceMesh& mesh, Real dhat)
-    : surface_(mesh, dhat), groups_(mesh), component_(groups_.component_of_object), block_object_(groups_.object_of_block) {
-  TAPE_CHECK(mesh.owner.size() == mesh.vertices.size() && dhat > 0);
+inline ContactSearch::ContactSearch(const SurfaceMesh& mesh, Real dhat, Real guard)
+    : surface_(mesh, dhat, guard), groups_(mesh), component_(groups_.component_of_object), block_object_(groups_.object_of_block) {
+  TAPE_CHECK(mesh.owner.size() == mesh.vertices.size() && guard > 0 && guard <= dhat);
   TAPE_CHECK(std::max(mesh.edges.size(), mesh.triangles.size()) < (1u << 24));
 }
 
 inline bool ContactSearch::update(const PathView& paths, Real margin) {
-  if (built_ && reduce(paths.x.size, true, detail::InTrust{paths, trust_.span()}, detail::And{})) {
+  if (built_ && reduce(surface_.vertices.size(), true, detail::InTrust{paths, trust_.span()}, detail::And{})) {
     ++report_.reuses;
     return false;
   }

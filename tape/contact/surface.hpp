@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "tape/bodies/path.hpp"
-#include "tape/core/types.hpp"
+#include "tape/contact/pair.hpp"
 
 namespace tape {
 /// A vertex as contact sees it. Constant for a run.
@@ -12,6 +12,7 @@ struct SurfaceVertex {
   Real area;     ///< [m^2] a third of the incident triangles, at rest
   int object;    ///< strip or body it belongs to; index into SurfaceMesh::objects
   int material;  ///< index of the material
+  bool rim;      ///< at an open edge of the surface
 };
 struct SurfaceEdge {
   int v[2];
@@ -20,7 +21,9 @@ struct SurfaceEdge {
 };
 struct SurfaceTriangle {
   int v[3];
-  Real area;  ///< [m^2] at rest
+  Real mean_area;  ///< [m^2] of the triangles of its object, at rest
+  Sharing sharing;
+  bool open;  ///< its object has a rim
 };
 
 /// Contact surface of the world: strips and bodies alike. Two primitives never form a pair when they share a vertex, when
@@ -32,5 +35,11 @@ struct SurfaceMesh {
   std::vector<SurfaceTriangle> triangles;
   std::vector<std::string> objects;  ///< names, for messages
   int materials = 1;
+
+  /// Appends an object; its edges, areas and neighbours follow from its triangles.
+  /// @param rest   [n] m
+  /// @param added  its triangles, vertices counted from its first
+  void add_object(const std::string& name, const std::vector<Vec3>& rest, const std::vector<VertexOwner>& owners,
+                  const std::vector<Index3>& added, Real xi, int material);
 };
 }  // namespace tape

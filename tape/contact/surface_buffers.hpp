@@ -22,20 +22,27 @@ struct Carriers {
 
 /// The surface in the memory of this side.
 struct SurfaceBuffers {
-  SurfaceBuffers(const SurfaceMesh& mesh, Real dhat_)
-      : vertices(mesh.vertices), edges(mesh.edges), triangles(mesh.triangles), materials(mesh.materials), dhat(dhat_) {
+  SurfaceBuffers(const SurfaceMesh& mesh, Real dhat_, Real guard_)
+      : vertices(mesh.vertices), edges(mesh.edges), triangles(mesh.triangles), materials(mesh.materials), dhat(dhat_), guard(guard_) {
     const Carriers carriers(mesh);
     vertex_carrier.upload(carriers.vertex), edge_carrier.upload(carriers.edge), triangle_carrier.upload(carriers.triangle);
   }
   SurfaceView view() const {
-    return {vertices.span(), edges.span(), triangles.span(), vertex_carrier.span(), edge_carrier.span(), triangle_carrier.span(),
-            materials,       dhat};
+    return {vertices.span(),
+            edges.span(),
+            triangles.span(),
+            vertex_carrier.span(),
+            edge_carrier.span(),
+            triangle_carrier.span(),
+            materials,
+            dhat,
+            guard};
   }
   Buffer<SurfaceVertex> vertices;
   Buffer<SurfaceEdge> edges;
   Buffer<SurfaceTriangle> triangles;
   Buffer<int> vertex_carrier, edge_carrier, triangle_carrier;
   int materials;
-  Real dhat;
+  Real dhat, guard;
 };
 }  // namespace tape::TAPE_SIDE::detail

@@ -4,8 +4,8 @@
 #include "tape/math/psd.hpp"
 
 namespace tape {
-/// Contact barrier of vertex-triangle and edge-edge pairs:  E = m b(d), with the law b of the pair's distance and the mollifier m
-/// of its edges (1 for vertex-triangle pairs).
+/// Contact barrier of vertex-triangle and edge-edge pairs:  E = sum over features of share m b(d), with the law b of the distance, the
+/// mollifier m of edge pairs (1 for vertex-triangle pairs) and the share of for_each_feature (1 for edge pairs).
 /// With closest-point weights w and unit normal n, grad d = w (x) n for all features. Its second derivative follows from
 /// D = d^2/2 minimised over the free parameters of the closest points: H_D = W^T W - Q S^-1 Q^T.
 struct Barrier {
@@ -14,7 +14,7 @@ struct Barrier {
   using Params = NoParams;
   using Element = ContactPair;
   Span<const Element> elements;
-  BarrierLaw law;
+  Real kappa;  ///< [Pa]
 
   /// A strip can touch itself; bodies touch each other unless all, or all but one, are static.
   static std::string needed(const Scene& scene, const Params&) {
@@ -23,9 +23,7 @@ struct Barrier {
     for (const Body& b : scene.bodies) movable += b.motion != Motion::fixed;
     return movable > 0 && scene.bodies.size() > 1 ? "bodies" : "";
   }
-  static Barrier build(const Scene& scene, const Assembly&, const Params&, std::vector<Element>&) {
-    return {{}, {scene.contact.kappa, scene.dhat()}};
-  }
+  static Barrier build(const Scene& scene, const Assembly&, const Params&, std::vector<Element>&) { return {{}, scene.contact.kappa}; }
 
   TAPE_HD Stencil<4> stencil(int i) const {
     const int(&v)[4] = elements[i].v;
@@ -33,31 +31,51 @@ struct Barrier {
   }
   TAPE_HD bool active(const StateView& s, int i) const {
     const PairState p = PairState::at(elements[i], s.x);
-    return law.reaches(p.d, elements[i].xi) && p.fade.value > 0;
+    return reaches(p, elements[i]) && p.fade.value > 0;
   }
-  TAPE_HD Jet barrier(const PairState& p, int i) const { return law.at(p.d, elements[i].xi, elements[i].weight); }
+  TAPE_HD static bool reaches(const PairState& p, const ContactPair& pair) { return BarrierLaw{1, pair.dhat}.reaches(p.d, pair.xi); }
+  TAPE_HD Jet barrier(const PairState& p, const ContactPair& pair) const {
+    return BarrierLaw{kappa, pair.dhat}.at(p.d, pair.xi, pair.weight);
+  }
 
   TAPE_HD Real energy(const StateView& s, int i) const {
-    const PairState p = PairState::at(elements[i], s.x);
-    return p.fade.value > 0 ? p.fade.value * barrier(p, i).value : 0;
+    const ContactPair& pair = elements[i];
+    const PairState at = PairState::at(pair, s.x);
+    if (!(at.d > pair.xi)) return at.fade.value > 0 ? barrier(at, pair).value : 0;
+    Real sum = 0;
+    if (reaches(at, pair) && at.fade.value > 0)
+      for_each_feature(pair, at, [&](const PairState& p, Real share) { sum += share * p.fade.value * barrier(p, pair).value; });
+    return sum;
   }
-  /// Force [N] that pushes the two primitives apart, along the normal.
-  TAPE_HD Real normal_force(const StateView& s, int i) const {
-    const PairState p = PairState::at(elements[i], s.x);
-    return -p.fade.value * barrier(p, i).slope;
+  /// Force [N] that pushes the two primitives apart; that of edge pairs unfaded.
+  TAPE_HD Real normal_force(const PairState& at, const ContactPair& pair) const {
+    Real sum = 0;
+    for_each_feature(pair, at, [&](const PairState& p, Real share) { sum -= share * barrier(p, pair).slope; });
+    return sum;
   }
   TAPE_HD VecN<12> gradient(const StateView& s, int i) const {
-    const PairState p = PairState::at(elements[i], s.x);
-    const Jet b = barrier(p, i);
-    VecN<12> g = p.fade.value * b.slope * distance_gradient(p);
-    if (p.fade.slope != 0) g += p.fade.slope * b.value * 2 * fade_pull(p, p.cross());
+    const ContactPair& pair = elements[i];
+    VecN<12> g = VecN<12>::Zero();
+    for_each_feature(pair, PairState::at(pair, s.x), [&](const PairState& p, Real share) {
+      const Jet b = barrier(p, pair);
+      g += share * p.fade.value * b.slope * distance_gradient(p);
+      if (p.fade.slope != 0) g += p.fade.slope * b.value * 2 * fade_pull(p, p.cross());
+    });
     return g;
   }
+  /// `projected` drops features of negative share: the neighbours' positive ones that they balance stay.
   TAPE_HD MatN<12, 12> hessian(const StateView& s, int i, HessianMode mode) const {
-    const PairState p = PairState::at(elements[i], s.x);
-    const Jet b = barrier(p, i);
-    if (mode == HessianMode::exact) return exact_hessian(p, b);
-    return p.fade.slope != 0 ? faded_projected_hessian(p, b) : projected_hessian(p, b);
+    const ContactPair& pair = elements[i];
+    MatN<12, 12> h = MatN<12, 12>::Zero();
+    for_each_feature(pair, PairState::at(pair, s.x), [&](const PairState& p, Real share) {
+      const Jet b = barrier(p, pair);
+      if (mode == HessianMode::exact) {
+        h += share * exact_hessian(p, b);
+      } else if (share > 0) {
+        h += share * (p.fade.slope != 0 ? faded_projected_hessian(p, b) : projected_hessian(p, b));
+      }
+    });
+    return h;
   }
 
  private:

@@ -42,14 +42,16 @@ struct Friction {
     const Real mu = s.mu[pair.interface];
     if (!(mu > 0)) return false;
     const PairState p = PairState::at(pair, s.x);
-    if (!barrier.law.reaches(p.d, pair.xi) || p.fade.slope != 0) return false;
+    if (!Barrier::reaches(p, pair) || p.fade.slope != 0) return false;
+    const Real force = barrier.normal_force(p, pair);
+    if (!(force > 0)) return false;
     const Vec3 n = p.normal();
     const Vec3 axis = std::fabs(n.x()) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
     const Vec3 t = n.cross(axis).normalized();
     for (int k = 0; k < 4; ++k) out.v[k] = pair.v[k], out.weight[k] = p.closest.weight[k];
     out.T.col(0) = t;
     out.T.col(1) = n.cross(t);
-    out.limit = -mu * barrier.law.at(p.d, pair.xi, pair.weight).slope;
+    out.limit = mu * force;
     return true;
   }
   TAPE_HD Stencil<4> stencil(int i) const { return {{elements[i].v[0], elements[i].v[1], elements[i].v[2], elements[i].v[3]}}; }
@@ -69,13 +71,14 @@ struct Friction {
     const Vec2 u = slip(s, i);
     return spread(i, elements[i].limit * secant(u.norm(), eps_v * s.dt) * (elements[i].T * u));
   }
-  /// Positive semidefinite as it is: f0 is convex.
+  /// Positive semidefinite as it is: f0 is convex. But it is flat along a slip beyond eps and does not see that f0 turns at slip 0. Where
+  /// Newton overshoots, the secant f0'(y)/y stands in for both directions: the parabola through y that lies above f0 everywhere.
   TAPE_HD MatN<12, 12> hessian(const StateView& s, int i, HessianMode) const {
     const Element& e = elements[i];
     const Vec2 u = slip(s, i);
     const Real y = u.norm(), eps = eps_v * s.dt;
     Mat2 m = secant(y, eps) * Mat2::Identity();
-    if (y > 0) m -= Mat2(u * u.transpose()) * (y >= eps ? 1 / (y * y * y) : 1 / (y * eps * eps));
+    if (!s.overshot && y > 0) m -= Mat2(u * u.transpose()) * (y >= eps ? 1 / (y * y * y) : 1 / (y * eps * eps));
     const Mat3 block = e.limit * e.T * m * e.T.transpose();
     MatN<12, 12> h;
     for (int k = 0; k < 4; ++k)

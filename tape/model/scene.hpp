@@ -27,6 +27,7 @@ struct TimeParams {
 struct ContactParams {
   Real dhat = 0;
   Real kappa = 1e4;
+  Real guard = 0.5;
   Real ccd_gap = 0.2;
   Real margin = 1;
   Real max_move = 0.05;
@@ -34,6 +35,7 @@ struct ContactParams {
   void fields(F&& f) {
     f("dhat", dhat, "m", Range::non_negative(), "activation distance of the barrier; 0: that of the film");
     f("kappa", kappa, "Pa", Range::positive(), "barrier stiffness");
+    f("guard", guard, "1", Range::above(0, 1), "reach of edge-edge pairs and of open rims, in units of dhat");
     f("ccd_gap", ccd_gap, "1", Range::above(0, 0.99), "fraction of a gap that one Newton step must leave");
     f("max_move", max_move, "m", Range::positive(), "longest way of a vertex in one Newton iteration: keeps the swept search small");
     f("margin", margin, "1", Range::non_negative(), "slack of the candidate search, in units of dhat: more finds more pairs less often");

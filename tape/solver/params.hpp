@@ -15,7 +15,7 @@ constexpr auto enum_names(StopRule) { return std::array<std::string_view, 2>{"ve
 struct NewtonParams {
   Real velocity_tol = 1e-2;
   StopRule stop = StopRule::velocity;
-  HessianMode hessian = HessianMode::projected;
+  HessianMode hessian = HessianMode::exact;
   int max_newton = 200;
   int max_line_search = 30;
   int retries = 4;

@@ -79,7 +79,7 @@ class SideStepper final : public Stepper {
   explicit SideStepper(const World& world)
       : world_(world),
         coordinates_(world.assembly),
-        search_(world.surface, world.setup.scene.dhat()),
+        search_(world.surface, world.setup.scene.dhat(), world.setup.scene.contact.guard * world.setup.scene.dhat()),
         linear_(world.setup.linear, layout(world.assembly)) {
     const State state = State::start(world);
     std::vector<Real> mu;
@@ -160,6 +160,7 @@ class SideStepper final : public Stepper {
 
   StateView view(const Configuration& at) const {
     return {.dt = dt_,
+            .overshot = overshot_,
             .x = at.x.span(),
             .x_start = start_.x.span(),
             .x_tilde = x_tilde_.span(),
@@ -219,6 +220,7 @@ class SideStepper final : public Stepper {
     update_candidates(direction_.span());
     objective_->begin_step(view(now_));
     Real previous = 0;
+    overshot_ = false;
     for (int k = 0; k < params.max_newton; ++k) {
       ++report.newton;
       if (!find_direction(report)) return false;
@@ -232,7 +234,9 @@ class SideStepper final : public Stepper {
       const bool converged = stops(moved, slope, rho);
       previous = moved;
       bool at_round_off = false;
+      const int halvings = report.halvings;
       if (!line_search(slope, report, at_round_off)) return false;
+      overshot_ = report.halvings > halvings;
       if (converged || at_round_off) return true;
     }
     return fail(report, "Newton's method took " + std::to_string(params.max_newton) + " iterations (solver.max_newton)");
@@ -357,7 +361,7 @@ class SideStepper final : public Stepper {
   Buffer<Real> grip_stiffness_, mu_;
   static constexpr Real kPositionRoundOff = 1e-15;
   Real dt_ = 0, moving_mass_ = 0, extent_ = 0;  // extent_: largest coordinate [m]
-  bool contact_on_ = false;
+  bool contact_on_ = false, overshot_ = false;
   Real search_ms_ = 0, assembly_ms_ = 0, linear_ms_ = 0, ccd_ms_ = 0, line_search_ms_ = 0;
   int searches_ = 0;
   long long capped_before_ = 0;

@@ -18,7 +18,7 @@ struct Scene {
   Buffer<Vec3> x, direction, bodies;
   Buffer<VertexOwner> owner;
   ContactSearch search;
-  explicit Scene(test::Surface s) : surface(std::move(s)), x(surface.x), owner(surface.mesh.owner), search(surface.mesh, kDhat) {
+  explicit Scene(test::Surface s) : surface(std::move(s)), x(surface.x), owner(surface.mesh.owner), search(surface.mesh, kDhat, kDhat) {
     std::vector<Vec3> d;  // a smooth motion of a fraction of the gap, as Newton iterations have it
     for (const Vec3& p : surface.x) d.push_back(3e-5 * Vec3(std::sin(300 * p.y()), std::cos(500 * p.x()), std::sin(700 * p.z())));
     direction.upload(d);

@@ -97,12 +97,21 @@ void EffectWorld::add_pairs() {
     }
     const std::vector<int> v = add_vertices(at);
     const Real length4 = (at[1] - at[0]).squaredNorm() * (at[3] - at[2]).squaredNorm();
-    pairs.push_back({{v[0], v[1], v[2], v[3]}, kind, 1, xi, 4e-6, kind == PairKind::edge_edge ? 1e-3 * length4 : 0});
+    pairs.push_back({.v = {v[0], v[1], v[2], v[3]},
+                     .kind = kind,
+                     .interface = 1,
+                     .xi = xi,
+                     .dhat = dhat,
+                     .weight = 4e-6,
+                     .mollifier = kind == PairKind::edge_edge ? 1e-3 * length4 : 0,
+                     .sharing = {{2, 2, 1}, {6, 5, 0}}});
   };
   for (Real xi : {0.0, 9e-5}) {
     for (Real gap : {0.02, 0.3, 0.9}) {
       const Real h = xi + gap * dhat;
       add(PairKind::vertex_triangle, {{0.3, 0.3, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, h, xi);               // face
+      add(PairKind::vertex_triangle, {{0.4, 0.02, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, h, xi);              // face, near an edge
+      add(PairKind::vertex_triangle, {{0.02, 0.03, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, h, xi);             // face, near a corner
       add(PairKind::vertex_triangle, {{0.4, -1e-4, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, h, xi);             // edge
       add(PairKind::vertex_triangle, {{-1e-4, -1e-4, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, h, xi);           // point
       add(PairKind::edge_edge, {{-0.3, 0.1, 0}, {0.6, 0, 0}, {0, -0.5, 0}, {0.1, 0.5, 0}}, h, xi);           // edge-edge
@@ -130,8 +139,17 @@ void EffectWorld::disturb() {
 }
 
 StateView EffectWorld::view() const {
-  return {dt,         span(x),           span(x_start),     span(x_tilde),        span(assembly.owner),
-          span(body), span(body_target), span(grip_target), span(grip_stiffness), span(mu)};
+  return {dt,
+          false,
+          span(x),
+          span(x_start),
+          span(x_tilde),
+          span(assembly.owner),
+          span(body),
+          span(body_target),
+          span(grip_target),
+          span(grip_stiffness),
+          span(mu)};
 }
 StateView EffectWorld::start_view() const {
   StateView s = view();

@@ -1,8 +1,7 @@
 #pragma once
 #include <functional>
-#include <map>
 #include <random>
-#include <utility>
+#include <string>
 #include <vector>
 
 #include "tape/contact/surface.hpp"
@@ -18,28 +17,12 @@ struct Surface {
 /// Adds an object of triangles whose vertices are `owner` or, if that is null, unknowns of their own.
 inline void add_object(Surface& s, const std::vector<Vec3>& x, const std::vector<Index3>& triangles, Real xi,
                        const VertexOwner* owner = nullptr, int material = 0) {
-  const int first = static_cast<int>(s.x.size()), object = static_cast<int>(s.mesh.objects.size());
-  s.mesh.objects.push_back("object " + std::to_string(object));
+  std::vector<VertexOwner> owners;
   for (const Vec3& p : x) {
     s.x.push_back(p);
-    s.mesh.vertices.push_back({xi, 0, object, material});
-    s.mesh.owner.push_back(owner ? *owner : VertexOwner{s.blocks++, -1});
+    owners.push_back(owner ? *owner : VertexOwner{s.blocks++, -1});
   }
-  std::map<std::pair<int, int>, Real> edge_area;
-  for (const Index3& t : triangles) {
-    const int v[3] = {first + t[0], first + t[1], first + t[2]};
-    const auto p = [&](int k) { return s.x[static_cast<std::size_t>(v[k])]; };
-    const Real area = 0.5 * (p(1) - p(0)).cross(p(2) - p(0)).norm();
-    s.mesh.triangles.push_back({{v[0], v[1], v[2]}, area});
-    for (int k = 0; k < 3; ++k) {
-      s.mesh.vertices[static_cast<std::size_t>(v[k])].area += area / 3;
-      edge_area[std::minmax(v[k], v[(k + 1) % 3])] += area / 3;
-    }
-  }
-  for (const auto& [v, area] : edge_area) {
-    const Real length2 = (s.x[static_cast<std::size_t>(v.first)] - s.x[static_cast<std::size_t>(v.second)]).squaredNorm();
-    s.mesh.edges.push_back({{v.first, v.second}, area, length2});
-  }
+  s.mesh.add_object("object " + std::to_string(s.mesh.objects.size()), x, owners, triangles, xi, material);
 }
 
 /// Strip of rows of `columns` vertices with cells of `cell` [m], same diagonals, whose centre line is curve(arc length) in the

@@ -100,7 +100,7 @@ TEST(ContactSearch, CandidatesHoldEveryPairThatComesNearAlongRandomMotion) {
   for (const unsigned seed : {1u, 2u, 3u}) {
     Scene scene(test::scattered_triangles(60, 0.2, 0.01, seed));
     scene.jiggle(0.1, seed);
-    ContactSearch search(scene.mesh(), 0.02);
+    ContactSearch search(scene.mesh(), 0.02, 0.02);
     EXPECT_TRUE(search.update(scene.paths(), 0));
     const std::set<Key> found = keys(search.candidates());
     expect_holds_all(found, near_pairs(scene, 0.02, 0.02));
@@ -115,7 +115,7 @@ TEST(ContactSearch, CandidatesHoldEveryPairOfRollsAndFolds) {
   for (const test::Surface& s : {test::wound_strip(1.3, 2.7e-4, kXi), test::folded_strip(3, 10, 2.7e-4, kXi)}) {
     Scene scene(s);
     scene.jiggle(1e-4, 5);
-    ContactSearch search(scene.mesh(), kDhat);
+    ContactSearch search(scene.mesh(), kDhat, kDhat);
     search.update(scene.paths(), 5e-5);
     expect_holds_all(keys(search.candidates()), near_pairs(scene, 2 * kXi, kDhat));
   }
@@ -130,7 +130,7 @@ TEST(ContactSearch, CandidatesHoldEveryPairOfATurningBody) {
   Scene scene(s);
   scene.bodies = {Vec3(0.005, 0, 0.005)};
   scene.direction = {Vec3(1e-4, 0, 0), Vec3(0, 0, 3.1)};  // about the z axis: the sides dip 5 mm, through the table
-  ContactSearch search(scene.mesh(), 1.5e-3);
+  ContactSearch search(scene.mesh(), 1.5e-3, 1.5e-3);
   search.update(scene.paths(), 0);
   expect_holds_all(keys(search.candidates()), near_pairs(scene, 2 * kXi, 1.5e-3));
   EXPECT_LT(search.limit_steps(scene.paths(), {})[1], 0.5);
@@ -143,7 +143,7 @@ TEST(ContactSearch, ConstantsOfAPairComeFromItsTwoPrimitives) {
   s.mesh.materials = 3;
   s.mesh.vertices[3].xi = 0.015;
   Scene scene(s);
-  ContactSearch search(scene.mesh(), 0.1);
+  ContactSearch search(scene.mesh(), 0.1, 0.1);
   search.update(scene.paths(), 0);
   int kinds[2] = {0, 0};
   for (const ContactPair& p : search.candidates()) {
@@ -172,7 +172,7 @@ TEST(ContactSearch, ConstantsOfAPairComeFromItsTwoPrimitives) {
 TEST(ContactSearch, CandidatesAreReusedExactlyWhileEveryPathStaysInItsTrustBox) {
   Scene scene(test::folded_strip(3, 10, 2.7e-4, kXi));
   scene.jiggle(1e-4, 7);
-  ContactSearch search(scene.mesh(), kDhat);
+  ContactSearch search(scene.mesh(), kDhat, kDhat);
   EXPECT_TRUE(search.update(scene.paths(), 5e-5));
   EXPECT_FALSE(search.update(scene.paths(), 5e-5));
   scene.move(0.5);
@@ -195,7 +195,7 @@ TEST(ContactSearch, AnArcThatOnlyBulgesOutOfItsBoxIsNotOverlooked) {
   Scene scene(s);
   scene.bodies = {Vec3(0.005, 0, 0.005)};
   scene.direction = {Vec3::Zero(), Vec3::Zero()};
-  ContactSearch search(scene.mesh(), kDhat);
+  ContactSearch search(scene.mesh(), kDhat, kDhat);
   search.update(scene.paths(), 1e-4);
   scene.direction = {Vec3::Zero(), Vec3(0, 2 * 3.14159265358979323846, 0)};  // a full turn ends where it began
   EXPECT_TRUE(search.update(scene.paths(), 1e-4));
@@ -211,7 +211,7 @@ TEST(ContactSearch, NoMotionLeavesNoPairBetweenFixedThingsOrWithinOneBody) {
   s.blocks = 2;
   Scene scene(s);
   scene.bodies = {Vec3(0.5, 0.5, 0)};
-  ContactSearch search(scene.mesh(), kDhat);
+  ContactSearch search(scene.mesh(), kDhat, kDhat);
   search.update(scene.paths(), 1e-3);
   EXPECT_EQ(search.candidates().size, 0);
 }
@@ -226,7 +226,7 @@ TEST(ContactSearch, OnlyWhatCandidatesConnectSharesAStepLimit) {
   Scene scene(s);
   const auto set = [&](int tile, const Vec3& d) { std::fill_n(scene.direction.begin() + 4 * (tile - 1), 4, d); };
   set(1, Vec3(0, -2e-3, 0)), set(3, Vec3(1e-3, 0, 0)), set(4, Vec3(0, -1e-3, 0));
-  ContactSearch search(scene.mesh(), 1.9e-3);
+  ContactSearch search(scene.mesh(), 1.9e-3, 1.9e-3);
   search.update(scene.paths(), 0);
   const Real eta = 0.2, gap = 1e-3 - 2 * kXi;
   const std::vector<Real> limit = search.limit_steps(scene.paths(), {.eta = eta});
@@ -253,7 +253,7 @@ TEST(ContactSearch, TwoObjectsOnOneBodyShareAStepLimit) {
   Scene scene(s);
   scene.bodies = {Vec3(0, 0, 0)};
   scene.direction = {Vec3(0, -2e-3, 0), Vec3::Zero()};
-  ContactSearch search(scene.mesh(), kDhat);
+  ContactSearch search(scene.mesh(), kDhat, kDhat);
   search.update(scene.paths(), 0);
   const std::vector<Real> limit = search.limit_steps(scene.paths(), {});
   EXPECT_LT(limit[1], 0.5);
@@ -265,7 +265,7 @@ TEST(ContactSearch, ThreadsAndOrderOfIterationsChangeNothing) {
   scene.jiggle(2e-4, 11);
   const auto run = [&](int n, std::uint64_t seed) {
     set_threads(n), set_shuffled_order(seed);
-    ContactSearch search(scene.mesh(), kDhat);
+    ContactSearch search(scene.mesh(), kDhat, kDhat);
     search.update(scene.paths(), 1e-5);
     std::vector<Key> order;
     for (const ContactPair& p : search.candidates()) order.push_back(key(p));
@@ -283,7 +283,7 @@ TEST(ContactSearch, ThreadsAndOrderOfIterationsChangeNothing) {
 
 TEST(ContactSearch, AnEmptySurfaceHasNoCandidates) {
   Scene scene{test::Surface{}};
-  ContactSearch search(scene.mesh(), kDhat);
+  ContactSearch search(scene.mesh(), kDhat, kDhat);
   search.update(scene.paths(), 0);
   EXPECT_EQ(search.candidates().size, 0);
   EXPECT_TRUE(search.limit_steps(scene.paths(), {}).empty());

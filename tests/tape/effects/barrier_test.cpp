@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "tests/support/derivatives.hpp"
 #include "tests/support/effect_world.hpp"
 using namespace tape;
@@ -17,7 +19,7 @@ struct Pair {
   ContactPair pair;
   Barrier barrier;
   Pair(PairKind kind, std::vector<Vec3> at, Real mollifier = 0)
-      : x(std::move(at)), pair{{0, 1, 2, 3}, kind, 0, 9e-5, kUnit, mollifier}, barrier{{&pair, 1}, kLaw} {}
+      : x(std::move(at)), pair{{0, 1, 2, 3}, kind, 0, 9e-5, kDhat, kUnit, mollifier, {}}, barrier{{&pair, 1}, 1} {}
   Pair(const Pair&) = delete;
   Pair& operator=(const Pair&) = delete;
   StateView view() const {
@@ -90,10 +92,71 @@ TEST(Barrier, PushesApartAlongTheNormalWithItsNormalForce) {
   const Real d = 9e-5 + kDhat / 2;
   const Pair p(PairKind::vertex_triangle, {{2e-4, 2e-4, d}, {0, 0, 0}, {1e-3, 0, 0}, {0, 1e-3, 0}});
   const VecN<12> g = p.barrier.gradient(p.view(), 0);
-  EXPECT_NEAR(p.barrier.normal_force(p.view(), 0), 1.8032926703e4, 1e-5);
+  EXPECT_NEAR(p.barrier.normal_force(PairState::at(p.pair, p.view().x), p.pair), 1.8032926703e4, 1e-5);
   EXPECT_NEAR(-g[2], 1.8032926703e4, 1e-5);       // the vertex goes up
   EXPECT_NEAR(g[5], 0.6 * 1.8032926703e4, 1e-5);  // corners down by their barycentric coordinates
   EXPECT_NEAR(g.head<2>().norm(), 0, 1e-9);
+}
+namespace {
+/// Six triangles around the origin, roofed by `slope` along the line x = 0 (positive: a valley), with a vertex at `x` above.
+struct Fan {
+  std::vector<Vec3> x;
+  std::vector<ContactPair> pairs;
+  Fan(const Vec3& at, Real slope) : x{at, Vec3::Zero()} {
+    for (int k = 0; k < 6; ++k) {
+      const Real angle = k * std::numbers::pi / 3 + std::numbers::pi / 6, c = 2e-3 * std::cos(angle);
+      x.emplace_back(c, 2e-3 * std::sin(angle), slope * std::fabs(c));
+    }
+    for (int k = 0; k < 6; ++k)
+      pairs.push_back({.v = {0, 1, 2 + k, 2 + (k + 1) % 6},
+                       .kind = PairKind::vertex_triangle,
+                       .interface = 0,
+                       .xi = 9e-5,
+                       .dhat = kDhat,
+                       .weight = kUnit,
+                       .mollifier = 0,
+                       .sharing = {{2, 1, 2}, {6, 0, 0}}});
+  }
+  template <class F>
+  auto sum(const F& f) const {
+    Barrier barrier{{pairs.data(), 6}, 1};
+    StateView s{};
+    s.x = {x.data(), static_cast<int>(x.size())};
+    auto total = f(barrier, s, 0);
+    for (int i = 1; i < 6; ++i) total += f(barrier, s, i);
+    return total;
+  }
+  Real energy() const {
+    return sum([](const Barrier& b, const StateView& s, int i) { return b.energy(s, i); });
+  }
+  Vec3 force() const {
+    return sum([](const Barrier& b, const StateView& s, int i) { return Vec3(-b.gradient(s, i).head<3>()); });
+  }
+};
+const Real kHeight = 9e-5 + kDhat / 2, kOnce = 0.37579141545, kPush = 1.8032926703e4;  // checks.md part 2
+}  // namespace
+TEST(Barrier, OverAFlatSheetAVertexMeetsTheSameBarrierEverywhere) {
+  for (const Vec3& at :
+       {Vec3(5e-4, 2e-4, 0), Vec3(4e-4, 0, 0), Vec3(0, 0, 0), Vec3(1e-6, 2e-6, 0), Vec3(3e-5, 1e-4, 0), Vec3(0, 8e-4, 0)}) {
+    const Fan fan(at + Vec3(0, 0, kHeight), 0);
+    EXPECT_NEAR(fan.energy(), kOnce, 1e-10) << at.transpose();
+    EXPECT_LT((fan.force() - Vec3(0, 0, kPush)).norm(), 1e-9 * kPush) << at.transpose();
+  }
+}
+TEST(Barrier, ARidgeCountsOnceAndAValleyPushesFromBothItsWalls) {
+  const auto law = [](Real d) { return kLaw.at(d, 9e-5, kUnit).value; };
+  for (const Real y : {0.0, 5e-4}) EXPECT_NEAR(Fan(Vec3(0, y, kHeight), -1).energy(), law(kHeight), 1e-10) << "above the ridge, y = " << y;
+  // In the middle of a valley of 90 degrees, at distance d from both walls, the line between them is sqrt(2) d away.
+  for (const Real y : {0.0, 5e-4})
+    EXPECT_NEAR(Fan(Vec3(0, y, std::numbers::sqrt2 * 1.6e-4), 1).energy(), 2 * law(1.6e-4) - law(std::numbers::sqrt2 * 1.6e-4), 1e-10) << y;
+}
+TEST(Barrier, OverAFoldedSheetTheEnergyIsContinuousAndItsForceTheSlope) {
+  for (const Real slope : {-0.7, -0.1, 0.1, 0.7})
+    for (Real s = -3e-4; s < 3e-4; s += 7e-6) {
+      const Vec3 at(s, 0.3 * s + 2e-5, kHeight + 1e-5 + slope * std::fabs(s));
+      const auto energy = [&](const Eigen::VectorXd& q) { return Fan(q, slope).energy(); };
+      EXPECT_LT((Fan(at, slope).force() + test::slope(energy, at, 1e-9)).norm(), 1e-4 * kPush) << slope << " " << s;
+    }
 }
 TEST(Barrier, ParallelEdgesFadeToNothing) {
   const Real d = 9e-5 + kDhat / 2;

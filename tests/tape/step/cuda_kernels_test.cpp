@@ -14,6 +14,7 @@
 using namespace tape;
 
 namespace {
+#ifdef TAPE_CUDA_LIBRARY
 std::string without_spaces(std::string text) {
   std::erase(text, ' ');
   return text;
@@ -26,6 +27,7 @@ std::string symbols_of(const std::string& library) {
   while (std::fgets(part.data(), part.size(), pipe.get()) != nullptr) all += part.data();
   return without_spaces(all);
 }
+#endif
 /// Launches whatever a scene with strips, driven and dynamic bodies, grips and friction launches, with both linear solvers.
 std::set<std::string> launched_kernels() {
   record_launches(true);
