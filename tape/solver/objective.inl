@@ -172,6 +172,8 @@ inline void Objective::set_candidates(Span<const ContactPair> candidates) {
 inline void Objective::begin_step(const StateView& s) {
   for_each([&]<class T>(std::string_view, Term<T>& term) {
     if constexpr (requires(typename T::Element & e) { term.view.lag(candidates_[0], s, e); }) {
+      term.view.elements = {};
+      if (candidates_.size == 0) return;
       const Stopwatch watch(term.ms);
       scratch_.resize(candidates_.size + 1);
       parallel_for(candidates_.size + 1, objective::FlagLagged<T>{term.view, s, candidates_, scratch_.span()});
@@ -185,6 +187,7 @@ inline void Objective::begin_step(const StateView& s) {
 inline EnergySum Objective::energy(const StateView& s) {
   EnergySum total;
   for_each([&]<class T>(std::string_view, Term<T>& term) {
+    if (term.view.elements.size == 0) return;
     const Stopwatch watch(term.ms);
     const EnergySum e = reduce(term.view.elements.size, EnergySum{}, objective::ElementEnergy<T>{term.view, s}, objective::AddEnergies{});
     total = {total.sum + e.sum, total.scale + e.scale};
@@ -208,9 +211,10 @@ inline void Objective::set_pattern(const StateView& s, bool contact) {
   int gradient_slots = 0, hessian_slots = 0;
   for_each([&]<class T>(std::string_view, Term<T>& term) {
     if (is_contact<T> != contact) return;
-    const Stopwatch watch(term.ms);
     const int n = term.view.elements.size;
     term.count = n;
+    if (n == 0) return;
+    const Stopwatch watch(term.ms);
     if constexpr (is_contact<T> && requires { term.view.active(s, 0); }) {
       scratch_.resize(n + 1);
       parallel_for(n + 1, objective::FlagActive<T>{term.view, s, scratch_.span()});
@@ -233,7 +237,7 @@ inline void Objective::set_pattern(const StateView& s, bool contact) {
   group.gradient.resize(gradient_slots);
   group.hessian.resize(hessian_slots);
   for_each([&]<class T>(std::string_view, Term<T>& term) {
-    if (is_contact<T> != contact) return;
+    if (is_contact<T> != contact || term.count == 0) return;
     const Stopwatch watch(term.ms);
     parallel_for(term.count, objective::EmitKeys<T>{term.view,
                                                     s,
@@ -251,7 +255,7 @@ inline void Objective::set_pattern(const StateView& s, bool contact) {
 inline void Objective::fill(const StateView& s, HessianMode mode, bool contact) {
   SlotGroupBuffers& group = contact ? contact_ : fixed_;
   for_each([&]<class T>(std::string_view, Term<T>& term) {
-    if (is_contact<T> != contact) return;
+    if (is_contact<T> != contact || term.count == 0) return;
     const Stopwatch watch(term.ms);
     parallel_for(term.count, objective::FillSlots<T>{term.view,
                                                      s,

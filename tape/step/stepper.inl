@@ -282,9 +282,11 @@ class SideStepper final : public Stepper {
       if (const Real longest = world_.setup.scene.contact.max_move; way > longest)
         parallel_for(direction_.size(), stepping::Scale{direction_.span(), longest / way});
       update_candidates(direction_.span());
-      const Stopwatch watch(ccd_ms_);
-      search_.limit_steps(coordinates_.paths(now_, direction_.span()), {.eta = world_.setup.scene.contact.ccd_gap});
-      search_.scale(direction_.span());
+      if (search_.candidates().size > 0) {
+        const Stopwatch watch(ccd_ms_);
+        search_.limit_steps(coordinates_.paths(now_, direction_.span()), {.eta = world_.setup.scene.contact.ccd_gap});
+        search_.scale(direction_.span());
+      }
     }
     const Stopwatch watch(line_search_ms_);
     const EnergySum before = objective_->energy(view(now_));

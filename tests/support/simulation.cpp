@@ -80,4 +80,11 @@ Body& add_body(Setup& setup, const std::string& name, TriangleMesh mesh, Motion 
   body.pose.position = position;
   return setup.scene.bodies.emplace_back(std::move(body));
 }
+
+Grip hold(const std::string& name, std::vector<int> vertices) {
+  Grip grip;
+  grip.name = name;
+  grip.what = {.object = "tape", .vertices = std::move(vertices), .points = {}};
+  return grip;
+}
 }  // namespace tape::test

@@ -45,4 +45,6 @@ Strip flat_strip(Real length, int cells, const Vec3& start);
 /// A scene with one such strip; dt 0.01 s, tolerance 1e-3 m/s.
 Setup strip_setup(const Strip& strip);
 Body& add_body(Setup& setup, const std::string& name, TriangleMesh mesh, Motion motion, const Vec3& position);
+/// A grip that holds these vertices of the strip where they are.
+Grip hold(const std::string& name, std::vector<int> vertices);
 }  // namespace tape::test
