@@ -1,5 +1,7 @@
 #include "apps/report/json.hpp"
 
+#include "tape/model/strip_mesh.hpp"
+
 namespace tape::report {
 namespace {
 Json effects_json(const RunSummary& summary) {
@@ -21,12 +23,15 @@ Json settings_json(const Setup& setup) {
   const Scene& scene = setup.scene;
   add_fields(json["time"], scene.time);
   add_fields(json["contact"], scene.contact);
+  json["contact"]["dhat"] = scene.dhat();  // what a 0 stands for
   json["gravity"] = {scene.gravity.x(), scene.gravity.y(), scene.gravity.z()};
   json["seed"] = scene.seed;
   for (const Film& film : scene.films) add_fields(json["films"][film.name], film);
   for (const Strip& strip : scene.strips) {
+    const Film& film = scene.films[static_cast<std::size_t>(strip.film)];
     add_fields(json["strips"][strip.name], strip.mesh);
-    json["strips"][strip.name]["film"] = scene.films[static_cast<std::size_t>(strip.film)].name;
+    json["strips"][strip.name]["cell_length"] = cell_length(strip.mesh, film.width);  // whole cells
+    json["strips"][strip.name]["film"] = film.name;
   }
   for (const Material& material : scene.materials) json["materials"][material.name] = {{"mu", material.mu}};
   for (const FrictionPair& pair : scene.frictions)

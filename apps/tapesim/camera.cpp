@@ -18,7 +18,7 @@ std::string yaml(T settings) {
   return text;
 }
 template <Settings T>
-CameraParams read_as(const cosim::Reader& camera) {
+T read_as(const cosim::Reader& camera) {
   T settings;
   camera.read(settings);
   return settings;
@@ -27,7 +27,14 @@ CameraParams read_as(const cosim::Reader& camera) {
 
 CameraParams read_camera(const cosim::Reader& camera) {
   if (!camera) return {};
-  return camera["fx"] ? read_as<render::PinholeSettings>(camera) : read_as<render::LookAtSettings>(camera);
+  if (camera["fx"]) return read_as<render::PinholeSettings>(camera);
+  const auto look = read_as<render::LookAtSettings>(camera);
+  try {
+    render::Camera::make(look, 2, 2);  // a camera that sees something
+  } catch (const InputError& e) {
+    throw InputError(camera.where() + ": " + e.what());
+  }
+  return look;
 }
 
 CameraParams load_camera(const std::filesystem::path& file) {
@@ -54,6 +61,8 @@ PictureParams read_pictures(const cosim::Reader& root) {
   const cosim::Reader section = root["video"];
   section.read(params.view);
   section.read(params.video);
+  for (const char* key : {"width", "height"})
+    if (const cosim::Reader size = section[key]; size && size.integer(Range::any()) % 2) size.fail("must be even, as H.264 asks");
   params.camera = read_camera(root["camera"]);
   return params;
 }

@@ -9,7 +9,7 @@ namespace {
 int check(const SceneArguments& arguments) {
   const LoadedWorld loaded = load_world(arguments);
   const Scene& scene = loaded.world.setup.scene;
-  fmt::print("{}: sound. {} strips, {} bodies, {} vertices, {} triangles, {} unknowns; {} steps of {} s\n", arguments.scene,
+  fmt::print("{}: sound. Strips: {}, bodies: {}, vertices: {}, triangles: {}, unknowns: {}; {} steps of {} s\n", arguments.scene,
              scene.strips.size(), scene.bodies.size(), loaded.world.assembly.surface_vertices, loaded.world.assembly.triangles.size(),
              3 * loaded.world.assembly.blocks, cosim::planned_steps(scene), to_text(scene.time.dt));
   return kDone;

@@ -13,10 +13,21 @@ struct Line {
   std::string why;
 };
 
-/// What asks for an effect, with the line of the scene that does, if one does.
+/// "file:line" of a key of the scene, or of the section or name that it comes with (film.poisson: film); empty for defaults.
+std::string place(const cosim::SceneFile& file, std::string key) {
+  for (std::string where;;) {
+    for (const std::string& name : {key, key + "s"})  // strip, or strips
+      if (where = file.where(name); !where.empty()) return where;
+    if (key.find('.') == std::string::npos) return "";
+    key.resize(key.rfind('.'));
+  }
+}
+
+/// What asks for an effect, with the line of the scene that does, unless a default does.
 std::string reason(const cosim::RunInput& input, const PlanLine& line) {
-  const std::string where = input.file.where(line.why);
-  return where.empty() ? line.why : fmt::format("{} ({})", line.why, where);
+  const std::string where = place(input.file, line.why);
+  if (!where.empty()) return fmt::format("{} ({})", line.why, where);
+  return line.on ? line.why + " (default)" : line.why;
 }
 
 /// Stages of a step that are not effects, and parts of the testbed that this build leaves out.

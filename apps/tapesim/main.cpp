@@ -1,9 +1,13 @@
 #include <fmt/core.h>
 
+#include <cerrno>
 #include <csignal>
+#include <cstring>
 #include <new>
+#include <set>
 
 #include "apps/tapesim/commands.hpp"
+#include "cosim/scene/node.hpp"
 #include "tape/core/error.hpp"
 
 namespace tape::tapesim {
@@ -13,10 +17,21 @@ void add_scene(CLI::App& command, SceneArguments& arguments) {
 }
 
 namespace {
+/// The parser alone would only say that a command is missing.
+void require_command(const CLI::App& app, const std::string& word) {
+  std::set<std::string, std::less<>> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) names.insert(command->get_name());
+  if (word.starts_with('-') || names.contains(word)) return;
+  if (word == "wind" || word == "replay") throw InputError(word + ": not in this build");
+  throw InputError(word + ": no such command; " + cosim::suggestion(word, names));
+}
+
 int act(const Action& chosen) {
   const auto say = [](const char* what, const std::exception& e) { fmt::print(stderr, "tapesim: {}{}\n", what, e.what()); };
   try {
-    return chosen();
+    const int code = chosen();
+    if (std::fflush(stdout) != 0) throw InputError(std::string("cannot write to standard output: ") + std::strerror(errno));
+    return code;
   } catch (const InputError& e) {
     say("", e);
     return kBadInput;
@@ -37,12 +52,18 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
   CLI::App app{"tape: simulates adhesive tape", "tapesim"};
   app.require_subcommand(1);
+  app.set_version_flag("--version", "tapesim " TAPE_VERSION);
+  app.failure_message(
+      [](const CLI::App*, const CLI::Error& e) { return fmt::format("tapesim: {}\nRun with --help for more information.\n", e.what()); });
   Action chosen;
   for (const auto add : {add_run, add_explain, add_check, add_study, add_render, add_info}) add(app, chosen);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? kDone : kBadInput;
-  }
-  return act(chosen);
+  return act([&] {
+    if (argc > 1) require_command(app, argv[1]);
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+      return app.exit(e) == 0 ? kDone : kBadInput;
+    }
+    return chosen();
+  });
 }

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "apps/render/renderer.hpp"
 #include "apps/report/strain.hpp"
+#include "apps/tapesim/interrupt.hpp"
+#include "apps/tapesim/progress.hpp"
 
 namespace tape::tapesim {
 namespace {
@@ -72,9 +75,14 @@ class Studio {
     return mesh;
   }
 
+  /// Of strips; forces of bodies only where there is no strip, for they stand on vertices that may be far from where the contact is.
   std::vector<Real> values(const RecordedFrame& frame, const std::vector<Vec3>& x) const {
-    if (params_.view.color == ColorBy::contact_force) return frame.contact_force;
     const RecordedMesh& mesh = recording_.mesh();
+    if (params_.view.color == ColorBy::contact_force) {
+      std::vector<Real> force = frame.contact_force;
+      if (mesh.strip_vertices > 0) std::fill(force.begin() + mesh.strip_vertices, force.end(), std::numeric_limits<Real>::quiet_NaN());
+      return force;
+    }
     return report::vertex_strain(mesh.triangles, mesh.rest, x, mesh.strip_vertices);
   }
 
@@ -128,10 +136,10 @@ class Studio {
 };
 
 /// A calibrated camera brings its own size; the video must have it too.
-video::VideoSettings video_settings(const PictureParams& params, const Studio& studio) {
+video::VideoSettings video_settings(const PictureParams& params, int width, int height) {
   video::VideoSettings settings = params.video;
-  settings.width = studio.width();
-  settings.height = studio.height();
+  settings.width = width;
+  settings.height = height;
   return settings;
 }
 
@@ -140,13 +148,18 @@ void require_frames(const StateReader& recording) {
 }
 }  // namespace
 
-void write_video(const StateReader& recording, const PictureParams& params, const std::filesystem::path& file,
-                 const PictureProgress& progress) {
+void require_video(const PictureParams& params) {
+  const auto* pinhole = std::get_if<render::PinholeSettings>(&params.camera);
+  require_valid(video_settings(params, pinhole ? pinhole->width : params.video.width, pinhole ? pinhole->height : params.video.height));
+}
+
+bool write_video(const StateReader& recording, const PictureParams& params, const std::filesystem::path& file) {
   require_frames(recording);
   Studio studio(recording, params);
-  video::VideoWriter video(file, video_settings(params, studio));
+  video::VideoWriter video(file, video_settings(params, studio.width(), studio.height()));
   const Real start = recording.frame(0).time, length = recording.frame(recording.frames() - 1).time - start;
   const int pictures = static_cast<int>(std::floor(length * params.video.rate + 1e-6)) + 1;
+  Progress progress("video", pictures);
   int shown = -1, next = 0;
   render::Picture picture;
   for (int k = 0; k < pictures; ++k) {
@@ -154,9 +167,11 @@ void write_video(const StateReader& recording, const PictureParams& params, cons
     while (next < recording.frames() && recording.frame(next).time <= time + 1e-9) ++next;
     if (next - 1 != shown) picture = studio.draw(recording.frame(shown = next - 1));
     video.add(picture);
-    if (progress) progress(k + 1, pictures);
+    if (interrupted()) return false;
+    progress.update(k + 1);
   }
   video.finish();
+  return true;
 }
 
 void write_still(const StateReader& recording, const PictureParams& params, int frame, const std::filesystem::path& file) {

@@ -1,6 +1,5 @@
 #pragma once
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <variant>
 
@@ -38,11 +37,11 @@ CameraParams load_camera(const std::filesystem::path& file);
 std::string camera_text(const CameraParams& camera);
 CameraParams parse_camera(const std::string& text);
 
-/// Told after each picture: done, of.
-using PictureProgress = std::function<void(int, int)>;
-/// The whole recording, at the speed of the simulation.
-void write_video(const cosim::StateReader& recording, const PictureParams& params, const std::filesystem::path& file,
-                 const PictureProgress& progress);
+/// @throws InputError where no video can be made so, before anything is simulated for it
+void require_video(const PictureParams& params);
+/// The whole recording, at the speed of the simulation. Shows its progress.
+/// @return false if it was interrupted: there is no file then
+bool write_video(const cosim::StateReader& recording, const PictureParams& params, const std::filesystem::path& file);
 /// One recorded state. @param frame  counted from 0; negative: from the end
 void write_still(const cosim::StateReader& recording, const PictureParams& params, int frame, const std::filesystem::path& file);
 }  // namespace tape::tapesim

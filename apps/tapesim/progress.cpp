@@ -1,11 +1,20 @@
 #include "apps/tapesim/progress.hpp"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
 
 namespace tape::tapesim {
+namespace {
+/// Letters in a line of the terminal: a longer one would run over the next.
+std::size_t terminal_width() {
+  winsize size{};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col : 80u;
+}
+}  // namespace
+
 std::string duration_text(double seconds) {
   const long s = static_cast<long>(seconds + 0.5);
   if (s < 60) return fmt::format("{} s", s);
@@ -14,7 +23,9 @@ std::string duration_text(double seconds) {
 }
 
 Progress::Progress(std::string what, int total)
-    : what_(std::move(what)), total_(std::max(1, total)), terminal_(isatty(STDERR_FILENO) == 1), start_(Clock::now()), last_(start_) {}
+    : what_(std::move(what)), total_(std::max(1, total)), terminal_(isatty(STDERR_FILENO) == 1), start_(Clock::now()), last_(start_) {
+  if (total > 0) update(0);
+}
 
 Progress::~Progress() {
   if (open_) fmt::print(stderr, "\n");
@@ -25,9 +36,11 @@ void Progress::update(int done, const std::string& note) {
   std::string text = note;
   if (done > 0 && done < total_) text += (note.empty() ? "" : ", ") + duration_text(seconds_since(start_) * (1 - share) / share) + " left";
   if (terminal_) {
-    if (done < total_ && seconds_since(last_) < 0.1) return;
+    if (open_ && done < total_ && seconds_since(last_) < 0.1) return;
     const auto filled = static_cast<std::size_t>(30 * share);
-    fmt::print(stderr, "\r{} [{:<30}] {:3.0f} % {}/{} {}\033[K", what_, std::string(filled, '#'), 100 * share, done, total_, text);
+    const std::string line =
+        fmt::format("{} [{:<30}] {:3.0f} % {}/{} {}", what_, std::string(filled, '#'), 100 * share, done, total_, text);
+    fmt::print(stderr, "\r{}\033[K", line.substr(0, terminal_width() - 1));
     std::fflush(stderr);
     open_ = true;
   } else {

@@ -3,8 +3,8 @@
 #include <string>
 
 namespace tape::tapesim {
-/// Says on standard error how far a long work is: a bar with the time left on a terminal, else a line at first, each tenth and each half
-/// minute.
+/// Says on standard error how far a long work is: a bar with the time left on a terminal, else a line at the start, each tenth and each
+/// half minute.
 class Progress {
  public:
   Progress(std::string what, int total);

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "apps/tapesim/commands.hpp"
+#include "apps/tapesim/interrupt.hpp"
 #include "apps/tapesim/pictures.hpp"
-#include "apps/tapesim/progress.hpp"
 #include "cosim/run/new_file.hpp"
 
 namespace tape::tapesim {
@@ -33,18 +33,18 @@ int render(const RenderArguments& arguments) {
   params.video.height = arguments.height;
   params.camera = arguments.camera.empty() ? parse_camera(recording.mesh().camera) : load_camera(arguments.camera);
   cosim::make_folder(out);
+  remember_interrupts();
   for (int frame : arguments.stills) {
     const std::filesystem::path file = out / fmt::format("still_{}.png", frame);
     write_still(recording, params, frame, file);
     fmt::print("{}\n", file.string());
+    if (interrupted()) return kInterrupted;
   }
   if (!arguments.stills.empty()) return kDone;
-  std::unique_ptr<Progress> progress;
-  write_video(recording, params, out / "video.mp4", [&](int done, int of) {
-    if (!progress) progress = std::make_unique<Progress>("video", of);
-    progress->update(done);
-  });
-  progress.reset();
+  if (!write_video(recording, params, out / "video.mp4")) {
+    fmt::print("interrupted: no video; to make it, give the same command again\n");
+    return kInterrupted;
+  }
   fmt::print("{}\n", (out / "video.mp4").string());
   return kDone;
 }

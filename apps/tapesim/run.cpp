@@ -1,6 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstring>
+#include <limits>
 #include <memory>
 
 #include "apps/report/json.hpp"
@@ -57,28 +61,49 @@ void print_summary(const cosim::RunSummary& s, const RunFolder& folder) {
   fmt::print("  state {}, files in {}\n", s.state_hash, folder.path().string());
 }
 
-void print_how_to_resume(const RunArguments& arguments, const State& state, const RunFolder& folder) {
-  std::string overrides;
-  for (const std::string& one : arguments.scene.overrides) overrides += " --set '" + one + "'";
-  fmt::print("stopped after step {}. To go on:\n  tapesim run {} --resume {} --out {}{}{}\n", state.step, arguments.scene.scene,
-             (folder / "snapshot.h5").string(), folder.path().string(), overrides, arguments.video ? " --video" : "");
+/// A word of a command line as a shell wants it.
+std::string shell_word(const std::string& text) {
+  const auto plain = [](unsigned char c) { return std::isalnum(c) || std::strchr("/._-+=,:", c); };
+  if (!text.empty() && std::all_of(text.begin(), text.end(), plain)) return text;
+  std::string word = "'";
+  for (char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + "'";
 }
 
-void make_video(const LoadedWorld& loaded, const RunFolder& folder) {
+void print_how_to_resume(const RunArguments& arguments, const State& state, const RunFolder& folder) {
+  std::string options;
+  for (const std::string& one : arguments.scene.overrides) options += " --set " + shell_word(one);
+  if (arguments.backend != "auto") options += " --backend " + arguments.backend;
+  if (arguments.video) options += " --video";
+  fmt::print("stopped after step {}. To go on:\n  tapesim run {} --resume {} --out {}{}\n", state.step, shell_word(arguments.scene.scene),
+             shell_word((folder / "snapshot.h5").string()), shell_word(folder.path().string()), options);
+}
+
+/// @return false if interrupted
+bool make_video(const LoadedWorld& loaded, const RunFolder& folder) {
   const cosim::StateReader recording(folder / "state.h5");
-  std::unique_ptr<Progress> pictures;
-  write_video(recording, loaded.input.pictures, folder / "video.mp4", [&](int done, int of) {
-    if (!pictures) pictures = std::make_unique<Progress>("video", of);
-    pictures->update(done);
-  });
+  if (write_video(recording, loaded.input.pictures, folder / "video.mp4")) return true;
+  fmt::print("interrupted: no video. To make it:\n  tapesim render {}\n", shell_word(folder.path().string()));
+  return false;
+}
+
+/// A step ends at (step + 1) dt, so that a snapshot goes on with the dt that it was made with.
+State resumed(const std::string& file, const World& world) {
+  State state = load_snapshot(file, world);
+  const Real dt = world.setup.scene.time.dt;
+  if (std::abs(state.time - state.step * dt) > 1e-6 * dt)
+    throw InputError(fmt::format("{}: step {} at {} s does not fit time.dt = {}; a run goes on with the dt that it began with", file,
+                                 state.step, to_text(state.time), to_text(dt)));
+  return state;
 }
 
 int run(const RunArguments& arguments) {
   set_threads(arguments.threads);
   const Backend backend = backend_of(arguments.backend);
   const LoadedWorld loaded = load_world(arguments.scene);
+  if (arguments.video) require_video(loaded.input.pictures);
   const std::unique_ptr<Stepper> stepper = make_stepper(backend, loaded.world);
-  State state = arguments.resume.empty() ? State::start(loaded.world) : load_snapshot(arguments.resume, loaded.world);
+  State state = arguments.resume.empty() ? State::start(loaded.world) : resumed(arguments.resume, loaded.world);
   const int first_step = state.step;
   RunFolder folder(arguments.out.empty() ? "out/" + loaded.world.setup.scene.name : arguments.out, loaded.world, state,
                    camera_text(loaded.input.pictures.camera));
@@ -89,10 +114,10 @@ int run(const RunArguments& arguments) {
   const std::string json = report::report_json(provenance, loaded.world, summary).dump(2) + '\n';
   folder.commit(state);
   cosim::write_text(folder / "report.json", json);
-  if (arguments.video && !log.interrupted) make_video(loaded, folder);
   print_summary(summary, folder);
   if (log.interrupted) print_how_to_resume(arguments, state, folder);
-  return !log.failure.empty() ? kNumericalFailure : log.interrupted ? kInterrupted : kDone;
+  const bool filmed = log.interrupted || !arguments.video || make_video(loaded, folder);
+  return !log.failure.empty() ? kNumericalFailure : log.interrupted || !filmed ? kInterrupted : kDone;
 }
 }  // namespace
 
@@ -102,7 +127,7 @@ void add_run(CLI::App& app, Action& chosen) {
   add_scene(*command, arguments->scene);
   command->add_option("--out", arguments->out,
                       "folder for report.json, steps.csv, state.h5, snapshot.h5, video.mp4 (default: out/<scene>)");
-  command->add_option("--steps", arguments->steps, "at most so many steps now")->check(CLI::NonNegativeNumber);
+  command->add_option("--steps", arguments->steps, "at most so many steps now")->check(CLI::Range(0, std::numeric_limits<int>::max()));
   command->add_option("--backend", arguments->backend, "auto, cpu or cuda")->check(CLI::IsMember({"auto", "cpu", "cuda"}));
   command->add_option("--threads", arguments->threads, "threads of the CPU back end; 0: all cores. Results do not depend on it")
       ->check(CLI::Range(0, 1024));

@@ -1,7 +1,7 @@
 #pragma once
 #include "apps/tapesim/commands.hpp"
 #include "apps/tapesim/pictures.hpp"
-#include "cosim/run/load_run.hpp"
+#include "cosim/run/read_run.hpp"
 
 namespace tape::tapesim {
 /// All of a scene file: the simulation, and the pictures of it.

@@ -31,12 +31,16 @@ struct StudyRun {
   bool measurable() const { return failure.empty(); }
 };
 
+LoadedWorld load_combination(const Study& study, const std::vector<std::string>& values) {
+  SceneArguments arguments{study.scene.string(), study.overrides};
+  for (std::size_t k = 0; k < values.size(); ++k) arguments.overrides.push_back(study.grid[k].first + "=" + values[k]);
+  return load_world(arguments);
+}
+
 /// Runs a combination. A numerical failure is a result; bad input is an error of the study.
 StudyRun run_one(const Study& study, const std::vector<std::string>& values) {
   StudyRun result{.values = values};
-  SceneArguments arguments{study.scene.string(), study.overrides};
-  for (std::size_t k = 0; k < values.size(); ++k) arguments.overrides.push_back(study.grid[k].first + "=" + values[k]);
-  const LoadedWorld loaded = load_world(arguments);
+  const LoadedWorld loaded = load_combination(study, values);
   const std::unique_ptr<Stepper> stepper = make_stepper(Backend::cpu, loaded.world);
   State state = State::start(loaded.world);
   cosim::RunOptions options{.record = loaded.input.run.record};
@@ -46,8 +50,8 @@ StudyRun run_one(const Study& study, const std::vector<std::string>& values) {
   result.seconds = log.wall;
   result.newton = summary.newton_mean;
   for (const cosim::Condition& condition : summary.conditions) result.unmet += !condition.met;
-  result.failure = log.interrupted ? "interrupted" : summary.failure;
-  if (result.measurable()) result.measured = measure(study.reference, loaded.world, log);
+  result.failure = summary.failure;
+  if (result.measurable() && !log.interrupted) result.measured = measure(study.reference, loaded.world, log);
   return result;
 }
 
@@ -109,41 +113,46 @@ std::string conclusion(const Study& study, const std::vector<StudyRun>& runs) {
                      report::rounded(best->error), label(study, *best));
 }
 
-void write_files(const Study& study, const std::vector<StudyRun>& runs, const std::filesystem::path& folder) {
+/// @return what was written
+std::string write_files(const Study& study, const std::vector<StudyRun>& runs, const std::filesystem::path& folder) {
   cosim::write_text(folder / "study.csv", report::to_csv(make_table(study, runs, tape::to_text)));
   report::Plot plot{"study " + study.name, "time [s]", error_label(study.reference), {}};
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const StudyRun& run = runs[i];
     const std::string number = std::to_string(i + 1);
-    if (run.measurable())
+    if (run.error > 0)  // a logarithmic plot shows no other
       plot.points.push_back({run.seconds, run.error, run.pareto ? number + ": " + label(study, run) : number, run.pareto});
   }
+  if (plot.points.empty()) return (folder / "study.csv").string();
   report::write_plot(plot, folder / "study");
+  return (folder / "study.{csv,png,svg}").string();
 }
 
 int run_study(const std::string& file, const std::vector<std::string>& overrides, const std::string& out, int thread_count) {
   set_threads(thread_count);
   const Study study = load_study(file, overrides);
   const std::filesystem::path folder = out.empty() ? "out/" + study.name : out;
+  const std::vector<std::vector<std::string>> combinations = study.combinations();
+  for (const auto& values : combinations) load_combination(study, values);  // bad input is found before the first run
   cosim::make_folder(folder);
   remember_interrupts();
   std::vector<StudyRun> runs;
-  const std::vector<std::vector<std::string>> combinations = study.combinations();
   {
     Progress progress("study " + study.name, static_cast<int>(combinations.size()));
     for (const std::vector<std::string>& values : combinations) {
-      runs.push_back(run_one(study, values));
+      StudyRun run = run_one(study, values);
       if (interrupted()) break;
+      runs.push_back(std::move(run));
       progress.update(static_cast<int>(runs.size()), label(study, runs.back()));
     }
   }
-  if (interrupted() && study.reference.kind == Reference::Kind::finest) return kInterrupted;
+  if (interrupted()) fmt::print("interrupted after {} of {} runs; a study starts anew\n", runs.size(), combinations.size());
+  if (interrupted() && (runs.empty() || study.reference.kind == Reference::Kind::finest)) return kInterrupted;
   find_errors(study, runs);
   fmt::print("{}\n{}\n{}\n", error_label(study.reference), report::to_text(make_table(study, runs, report::rounded)),
              conclusion(study, runs));
+  fmt::print("{}\n", write_files(study, runs, folder));
   if (interrupted()) return kInterrupted;
-  write_files(study, runs, folder);
-  fmt::print("{}\n", (folder / "study.{csv,png,svg}").string());
   for (const StudyRun& run : runs)
     if (!run.measurable()) return kNumericalFailure;
   return kDone;

@@ -78,6 +78,7 @@ Real figure_value(const std::string& key, const World& world, const cosim::RunLo
 }  // namespace
 
 Measured measure(const Reference& reference, const World& world, const cosim::RunLog& log) {
+  if (log.rows.empty()) throw InputError("a study needs a scene with at least one step: time.duration / time.dt");
   Measured measured;
   if (reference.kind == Reference::Kind::heavy_elastica) {
     measured.error = elastica_error(world, log);

@@ -6,7 +6,7 @@
 
 namespace tape::tapesim {
 namespace {
-constexpr std::size_t kMostRuns = 1000;
+constexpr Real kMostRuns = 1000;
 
 Reference read_reference(const cosim::SceneFile& file) {
   const cosim::Reader against = file["against"], form = against["closed_form"], finest = against["finest"];
@@ -42,6 +42,8 @@ Study load_study(const std::filesystem::path& path, const std::vector<std::strin
   const cosim::SceneFile file = cosim::SceneFile::load(path);
   Study study;
   study.name = file["study"].text_or(path.stem().string());
+  if (study.name.find('/') != std::string::npos)
+    file["study"].fail("the name of a study holds no slash: it names the folder of its results");
   const cosim::Reader scene = file["scene"];
   study.scene = cosim::find_file(path, "scenes", scene.text());
   if (study.scene.empty()) scene.fail("no such scene beside the study, above it, or in data/scenes");
@@ -54,7 +56,9 @@ Study load_study(const std::filesystem::path& path, const std::vector<std::strin
     if (study.grid.back().second.empty()) grid[key].fail("needs at least one value");
   }
   if (study.grid.empty()) grid.fail("needs at least one key, such as solver.velocity_tol: [1e-2, 1e-3]");
-  if (study.combinations().size() > kMostRuns) grid.fail("asks for more than " + std::to_string(kMostRuns) + " runs");
+  Real runs = 1;
+  for (const auto& [key, values] : study.grid) runs *= static_cast<Real>(values.size());
+  if (runs > kMostRuns) grid.fail("asks for " + tape::to_text(runs) + " runs (allowed: at most " + tape::to_text(kMostRuns) + ")");
   study.reference = read_reference(file);
   file.require_all_used();
   return study;

@@ -46,13 +46,13 @@ std::vector<std::string> ffmpeg_command(const VideoSettings& s, const std::files
           "mp4",
           "file:" + file.string()};
 }
-VideoSettings checked(const VideoSettings& s) {
-  require_valid(s, "video");
+}  // namespace
+
+void require_valid(const VideoSettings& s) {
+  tape::require_valid(s, "video");
   for (const auto& [name, value] : {std::pair{"video.width", s.width}, std::pair{"video.height", s.height}})
     if (value % 2) throw SettingsError(name, std::to_string(value), "an even number of px");
-  return s;
 }
-}  // namespace
 
 struct VideoWriter::Impl {
   struct Part {  // outlives ffmpeg, so that nothing is left behind
@@ -67,12 +67,14 @@ struct VideoWriter::Impl {
   Part part;
   Process ffmpeg;
   Impl(const std::filesystem::path& p, const VideoSettings& s)
-      : path(p), settings(checked(s)), part{p.string() + ".part"}, ffmpeg(ffmpeg_command(settings, part.path)) {}
+      : path(p), settings(s), part{p.string() + ".part"}, ffmpeg(ffmpeg_command(settings, part.path)) {}
   [[noreturn]] void fail() const { throw InputError(path.string() + ": ffmpeg failed: " + ffmpeg.messages()); }
 };
 
-VideoWriter::VideoWriter(const std::filesystem::path& path, const VideoSettings& settings)
-    : impl_(std::make_unique<Impl>(path, settings)) {}
+VideoWriter::VideoWriter(const std::filesystem::path& path, const VideoSettings& settings) {
+  require_valid(settings);
+  impl_ = std::make_unique<Impl>(path, settings);
+}
 VideoWriter::~VideoWriter() = default;
 VideoWriter::VideoWriter(VideoWriter&&) noexcept = default;
 VideoWriter& VideoWriter::operator=(VideoWriter&&) noexcept = default;

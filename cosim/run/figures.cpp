@@ -101,7 +101,7 @@ std::span<const Figure> all_figures() { return kFigures; }
 
 void require_figures(const std::vector<std::string>& names, const World& world) {
   for (const std::string& name : names) {
-    const auto refuse = [&](const std::string& why) { throw InputError("record.figures: " + name + ": " + why); };
+    const auto refuse = [&](const std::string& why) { throw InputError(name + ": " + why); };
     if (!find(name)) {
       std::string known;
       for (const Figure& figure : kFigures) known += (known.empty() ? "" : ", ") + std::string(figure.name);

@@ -176,6 +176,8 @@ std::vector<T> Hdf5Reader::read(const std::string& array, hid_t type, int row) c
   }
   H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr);
   const Handle memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
+  constexpr double kMost = 1e9;  // more stands in no file of ours; a damaged one may claim anything
+  if (!(std::accumulate(size.begin(), size.end(), 1.0, std::multiplies<>()) <= kMost)) fail(array);
   std::vector<T> values(product(size));
   if (!values.empty() && H5Dread(data, type, memory, space, H5P_DEFAULT, values.data()) < 0) fail(array);
   return values;
@@ -191,6 +193,8 @@ std::string Hdf5Reader::read_text(const std::string& attribute) const {
   const Handle read(H5Aopen(id_, attribute.c_str(), H5P_DEFAULT), H5Aclose);
   if (read < 0) fail(attribute);
   const Handle type(H5Aget_type(read), H5Tclose);
+  constexpr std::size_t kMost = 64'000'000;
+  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 || H5Tget_size(type) > kMost) fail(attribute);
   std::string text(H5Tget_size(type), '\0');
   if (H5Aread(read, type, text.data()) < 0) fail(attribute);
   return text.c_str();

@@ -1,5 +1,6 @@
 #include "cosim/run/state_file.hpp"
 
+#include <algorithm>
 #include <sstream>
 
 #include "tape/core/error.hpp"
@@ -45,15 +46,29 @@ std::vector<RecordedObject> read_objects(const Hdf5Reader& file) {
   return objects;
 }
 
+int body_count(const RecordedMesh& mesh) {
+  return static_cast<int>(std::count_if(mesh.objects.begin(), mesh.objects.end(), [](const RecordedObject& o) { return !o.strip; }));
+}
+
 /// What a picture relies on.
 bool consistent(const RecordedMesh& mesh) {
   const auto nv = static_cast<int>(mesh.body.size());
   bool ok = mesh.rest.size() == mesh.body.size() && mesh.local.size() == mesh.body.size() && mesh.strip_vertices >= 0 &&
             mesh.strip_vertices <= nv;
+  for (int v = 0; v < nv && ok; ++v) {
+    const int body = mesh.body[static_cast<std::size_t>(v)];
+    ok = v < mesh.strip_vertices ? body == -1 : body >= 0 && body < body_count(mesh);
+  }
   for (const Index3& t : mesh.triangles) ok = ok && t.minCoeff() >= 0 && t.maxCoeff() < nv;
   for (const RecordedObject& o : mesh.objects)
-    ok = ok && o.first_triangle >= 0 && o.triangles >= 0 && o.first_triangle + o.triangles <= static_cast<int>(mesh.triangles.size());
+    ok = ok && o.first_triangle >= 0 && o.triangles >= 0 && o.triangles <= std::ssize(mesh.triangles) - o.first_triangle;
   return ok;
+}
+bool consistent(const RecordedFrame& frame, const RecordedMesh& mesh) {
+  const auto finite = [](const auto& value) { return value.allFinite(); };
+  return std::ssize(frame.x) == mesh.strip_vertices && std::ssize(frame.bodies) == body_count(mesh) &&
+         frame.contact_force.size() == mesh.body.size() && std::all_of(frame.x.begin(), frame.x.end(), finite) &&
+         std::all_of(frame.bodies.begin(), frame.bodies.end(), [&](const Pose& X) { return finite(X.rotation) && finite(X.position); });
 }
 }  // namespace
 
@@ -129,8 +144,8 @@ void StateWriter::add(const RecordedFrame& frame) {
   file_.reserve();
 }
 
-StateReader::StateReader(const std::filesystem::path& name) : file_(name) {
-  if (file_.read_text("format") != kFormat) throw InputError(name.string() + ": not a recording of this version");
+StateReader::StateReader(const std::filesystem::path& name) : name_(name.string()), file_(name) {
+  if (file_.read_text("format") != kFormat) throw InputError(name_ + ": not a recording of this version");
   mesh_.scene = file_.read_text("scene");
   mesh_.camera = file_.read_text("camera");
   mesh_.objects = read_objects(file_);
@@ -138,9 +153,10 @@ StateReader::StateReader(const std::filesystem::path& name) : file_(name) {
   mesh_.rest = unflat<Vec2>(file_.read_reals("rest"));
   mesh_.local = unflat<Vec3>(file_.read_reals("local"));
   mesh_.body = file_.read_ints("body");
-  mesh_.strip_vertices = file_.read_ints("strip_vertices").at(0);
+  const std::vector<int> strip_vertices = file_.read_ints("strip_vertices");
+  mesh_.strip_vertices = strip_vertices.empty() ? -1 : strip_vertices[0];
   frames_ = static_cast<int>(file_.shape("step")[0]);
-  if (!consistent(mesh_)) throw InputError(name.string() + ": damaged: its arrays do not fit together");
+  if (!consistent(mesh_)) throw InputError(name_ + ": damaged: its arrays do not fit together");
 }
 
 RecordedFrame StateReader::frame(int i) const {
@@ -150,9 +166,7 @@ RecordedFrame StateReader::frame(int i) const {
                       .bodies = {},
                       .contact_force = {}};
   if (mesh_.strip_vertices > 0) frame.x = unflat<Vec3>(file_.read_row("x", i));
-  bool any_body = false;
-  for (const RecordedObject& object : mesh_.objects) any_body = any_body || !object.strip;
-  const std::vector<double> poses = any_body ? file_.read_row("pose", i) : std::vector<double>();
+  const std::vector<double> poses = body_count(mesh_) > 0 ? file_.read_row("pose", i) : std::vector<double>();
   for (std::size_t p = 0; p + 12 <= poses.size(); p += 12) {
     Pose X;
     X.rotation = Eigen::Map<const Mat3>(poses.data() + p).transpose();
@@ -160,6 +174,7 @@ RecordedFrame StateReader::frame(int i) const {
     frame.bodies.push_back(X);
   }
   frame.contact_force = file_.read_row("contact_force", i);
+  if (!consistent(frame, mesh_)) throw InputError(name_ + ": damaged: its state " + std::to_string(i) + " does not fit its mesh");
   return frame;
 }
 }  // namespace cosim

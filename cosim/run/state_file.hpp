@@ -60,6 +60,7 @@ class StateReader {
   RecordedFrame frame(int i) const;
 
  private:
+  std::string name_;
   Hdf5Reader file_;
   RecordedMesh mesh_;
   int frames_ = 0;

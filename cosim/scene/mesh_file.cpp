@@ -47,6 +47,7 @@ TriangleMesh parse_mesh(const std::string& bytes, const std::string& extension, 
   std::transform(format.begin(), format.end(), format.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (format != "stl" && format != "obj" && format != "dae")
     throw InputError(asked_by + ": ." + extension + " is no known mesh format (allowed: stl, obj, dae)");
+  if (bytes.empty()) throw InputError(asked_by + ": the file is empty");
   const std::size_t megabytes = 200 + bytes.size() / 25'000;  // the importer takes some ten times the size of the file
   const auto corners = run_isolated([&] { return import_triangles(bytes, format); }, 60, megabytes);
   if (!corners) throw InputError(asked_by + ": not a valid " + format + " file: the importer breaks down on it");
@@ -66,7 +67,7 @@ TriangleMesh parse_mesh(const std::string& bytes, const std::string& extension, 
 }
 
 TriangleMesh load_mesh(const std::filesystem::path& file, double scale, const std::string& asked_by) {
-  const std::string extension = file.extension().string();
-  return parse_mesh(read_whole_file(file, asked_by), extension.empty() ? "" : extension.substr(1), scale, asked_by + " = " + file.string());
+  const std::string extension = file.extension().string(), name = asked_by + " = " + file.string();
+  return parse_mesh(read_whole_file(file, name), extension.empty() ? "" : extension.substr(1), scale, name);
 }
 }  // namespace cosim

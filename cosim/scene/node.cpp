@@ -47,13 +47,13 @@ class Builder : public YAML::EventHandler {
   struct Level {
     Node node;
     YAML::anchor_t anchor;
-    std::string key;
+    std::string key, key_where;
     bool has_key = false;
   };
   std::string where(const YAML::Mark& mark) const { return name_ + ":" + std::to_string(mark.line + 1); }
   void open(Node node, YAML::anchor_t anchor) {
     if (levels_.size() >= kMaxDepth) throw InputError(node.where + ": nested too deeply");
-    levels_.push_back({std::move(node), anchor, {}});
+    levels_.push_back({std::move(node), anchor, {}, {}});
   }
   void close() {
     Level level = std::move(levels_.back());
@@ -80,8 +80,9 @@ class Builder : public YAML::EventHandler {
       if (node.kind != Node::Kind::scalar) throw InputError(node.where + ": a key must be plain text, not " + node.summary());
       if (const Node* first = level.node.find(node.text))
         throw InputError(node.where + ": " + node.text + ": duplicate key, first at " + first->where);
-      level.key = node.text, level.has_key = true;
+      level.key = node.text, level.key_where = node.where, level.has_key = true;
     } else {
+      if (node.kind != Node::Kind::scalar) node.where = level.key_where;  // a section stands where its name does, not one line below
       level.node.entries.emplace_back(std::move(level.key), std::move(node));
       level.has_key = false;
     }

@@ -20,7 +20,9 @@ class SceneReader {
 
   Scene read() {
     scene_.name = file_["scene"].text_or(file_.path().stem().string());
-    file_.read("time", scene_.time);
+    if (scene_.name.find('/') != std::string::npos)
+      file_["scene"].fail("the name of a scene holds no slash: it names the folder of its runs");
+    time();
     file_.read("contact", scene_.contact);
     scene_.gravity = file_["gravity"].vector_or(scene_.gravity, kPlace, "m/s^2");
     scene_.seed = file_["seed"].integer_or(scene_.seed, Range::non_negative());
@@ -30,10 +32,19 @@ class SceneReader {
     bodies();
     for (const Reader& entry : file_["interfaces"].items()) interface(entry);
     read_script(file_["script"], meshes_, scene_);
+    if (scene_.strips.empty() && scene_.bodies.empty()) file_.root().fail("there is nothing to simulate: neither a strip nor a body");
     return std::move(scene_);
   }
 
  private:
+  void time() {
+    const Reader section = file_["time"];
+    section.read(scene_.time);
+    const Real steps = scene_.time.duration / scene_.time.dt;
+    if (constexpr Real kMostSteps = 1e9; !(steps <= kMostSteps))
+      section["duration"].fail("asks for " + tape::to_text(steps) + " steps of time.dt (allowed: at most " + tape::to_text(kMostSteps) +
+                               ")");
+  }
   void materials() {
     const Reader section = file_["materials"];
     for (const std::string& name : section.keys()) section[name].read(scene_.materials[material(name)]);

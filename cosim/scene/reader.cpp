@@ -67,11 +67,11 @@ Real Reader::number(Range range, const char* unit) const {
   return *value;
 }
 
-int Reader::integer(Range range) const {
+int Reader::integer(Range range, const char* unit) const {
   constexpr Real kLimit = std::numeric_limits<int>::max();
   range.low = std::max(range.low, -kLimit), range.high = std::min(range.high, kLimit);
-  const Real value = number(range, "");
-  if (value != std::floor(value)) fail("not a whole number" + allowed(range, ""));
+  const Real value = number(range, unit);
+  if (value != std::floor(value)) fail("not a whole number" + allowed(range, unit));
   return static_cast<int>(value);
 }
 
@@ -129,6 +129,6 @@ std::size_t choose(const Reader& reader, const std::vector<std::string>& names) 
   std::string all;
   for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
   const std::string near = suggestion(text, {names.begin(), names.end()});
-  reader.fail("unknown; " + (near.starts_with("did") ? near + " " : "") + "(allowed: " + all + ")");
+  reader.fail("unknown" + (near.starts_with("did") ? "; " + near : "") + " (allowed: " + all + ")");
 }
 }  // namespace cosim

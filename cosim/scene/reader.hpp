@@ -36,7 +36,7 @@ class Reader {
 
   // Values. @throws InputError if it is missing, of another type or out of range
   Real number(Range range, const char* unit) const;
-  int integer(Range range) const;
+  int integer(Range range, const char* unit = "") const;
   bool flag() const;
   std::string text() const;
   std::vector<Real> numbers(std::size_t count, Range range, const char* unit) const;
@@ -83,7 +83,7 @@ void Reader::read(T& settings) const {
     if constexpr (std::is_same_v<V, Real>) {
       value = field.number(range, unit);
     } else if constexpr (std::is_same_v<V, int>) {
-      value = field.integer(range);
+      value = field.integer(range, unit);
     } else if constexpr (std::is_same_v<V, bool>) {
       value = field.flag();
     } else if constexpr (std::is_same_v<V, std::string>) {

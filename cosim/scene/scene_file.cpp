@@ -47,6 +47,7 @@ void apply_override(Node& root, const std::string& text) {
   const std::size_t equals = text.find('=');
   const std::string dotted = text.substr(0, equals);
   if (equals == std::string::npos) throw InputError(where + ": must be path.to.key=value");
+  if (equals + 1 == text.size()) throw InputError(where + ": has no value; ~ stands for the default");
   const std::vector<std::string> keys = split_path(dotted);
   if (std::find(keys.begin(), keys.end(), "") != keys.end()) throw InputError(where + ": must be path.to.key=value");
   Node* node = &root;
@@ -86,16 +87,16 @@ std::string SceneFile::where(std::string_view dotted) const {
   return node->where;
 }
 
-std::string read_whole_file(const fs::path& file, const std::string& asked_by) {
+std::string read_whole_file(const fs::path& file, const std::string& name) {
   std::error_code error;
-  if (!fs::exists(file, error)) throw InputError(asked_by + ": " + file.string() + " does not exist");
-  if (!fs::is_regular_file(file, error)) throw InputError(asked_by + ": " + file.string() + " is not a file");
+  if (!fs::exists(file, error)) throw InputError(name + ": there is no such file");
+  if (!fs::is_regular_file(file, error)) throw InputError(name + ": is not a file");
   if (constexpr std::uintmax_t kLimit = 64'000'000; fs::file_size(file, error) > kLimit)
-    throw InputError(asked_by + ": " + file.string() + " is too large (allowed: 64 MB)");
+    throw InputError(name + ": is too large (allowed: 64 MB)");
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
   text << stream.rdbuf();
-  if (!stream) throw InputError(asked_by + ": " + file.string() + " cannot be read");
+  if (!stream) throw InputError(name + ": cannot be read");
   return text.str();
 }
 

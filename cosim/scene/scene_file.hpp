@@ -43,8 +43,9 @@ class SceneFile {
   Node root_;
 };
 
-/// The text of a file. @throws InputError starting with `asked_by` if it is missing, no file, unreadable or above 64 MB
-std::string read_whole_file(const std::filesystem::path& file, const std::string& asked_by);
+/// The text of a file. @param name  of the file, and of what asks for it: what messages start with
+/// @throws InputError if it is missing, no file, unreadable or above 64 MB
+std::string read_whole_file(const std::filesystem::path& file, const std::string& name);
 
 /// The first of `name` that exists: in the folder of `from` and in its parents, each also under `subfolder` and data/`subfolder`,
 /// then in the project's own data/`subfolder`. Empty if there is none.

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <sstream>
 
 #include "tests/apps/tapesim/program.hpp"
@@ -59,6 +60,11 @@ TEST_F(Explain, NamesEveryEffectAndStageOnOrOffWithTheLineThatAsks) {
                             "cutting", "sleeping", "cosim"})
     EXPECT_THAT(line_of(outcome.out, stage), ContainsRegex(" on | off ")) << stage;
 }
+TEST_F(Explain, SaysWhereADefaultAsks) {
+  const Outcome outcome = tapesim({"explain", scene, "--backend", "cpu", "--set", "effects=~"});
+  EXPECT_THAT(line_of(outcome.out, "gravity"), ContainsRegex("on +gravity \\(default\\)"));
+  EXPECT_THAT(line_of(outcome.out, "bending"), ContainsRegex("on .*small.yaml:2"));
+}
 TEST_F(Check, SaysThatASceneIsSoundAndWritesNothing) {
   const Outcome outcome = tapesim({"check", scene});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -97,6 +103,25 @@ TEST_F(StudyCommand, AgainstTheFinestRunMeasuresStatesOnDifferentMeshes) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(read(folder / "out" / "study.csv"), HasSubstr("finest"));
 }
+TEST_F(StudyCommand, AMistakeInAnyRunIsFoundBeforeTheFirst) {
+  const std::string study = folder.file(
+      "study.yaml", "study: late\nscene: small.yaml\ngrid: {time.dt: [0.05, -1]}\nagainst: {finest: true}\nset: {time.duration: 1000}\n");
+  const Outcome outcome = tapesim({"study", study, "--out", (folder / "out").string()});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("time.dt = -1"));
+  EXPECT_EQ(folder.names("out").size(), 0u);
+}
+TEST_F(StudyCommand, CtrlCKeepsTheRunsThatAreDone) {
+  const std::string study = folder.file(
+      "study.yaml", "study: long\nscene: small.yaml\ngrid: {time.duration: [0.1, 100000]}\nagainst: {closed_form: heavy_elastica}\n");
+  Program program({"study", study, "--out", (folder / "out").string()});
+  ASSERT_TRUE(program.wait_for_error_text("1/2"));
+  program.signal(SIGINT);
+  const Outcome outcome = program.wait();
+  EXPECT_EQ(outcome.exit_code, 130) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("interrupted after 1 of 2 runs"));
+  EXPECT_THAT(read(folder / "out" / "study.csv"), HasSubstr("\n1,0.1,"));
+}
 TEST_F(StudyCommand, AMistakeInTheStudyExitsWithTwo) {
   for (const char* end : {"against: {closed_form: magic}\n", "against: {}\n", "against: {finest: true}\nmeasure: weight\n",
                           "against: {finest: true}\ngird: 3\n", "against: {closed_form: capstan, angle_deg: 180}\n"}) {
@@ -105,6 +130,24 @@ TEST_F(StudyCommand, AMistakeInTheStudyExitsWithTwo) {
     EXPECT_THAT(outcome.err, HasSubstr("tapesim: ")) << end;
   }
   EXPECT_EQ(tapesim({"study", (folder / "none.yaml").string()}).exit_code, 2);
+}
+TEST_F(Render, CtrlCLeavesNoVideo) {
+  ASSERT_EQ(tapesim({"run", scene, "--out", (folder / "a").string(), "--set", "time.duration=30"}).exit_code, 0);
+  const std::vector<std::string> before = folder.names("a");
+  Program program({"render", (folder / "a").string()});
+  ASSERT_TRUE(program.wait_for_error_text("video: "));
+  program.signal(SIGINT);
+  const Outcome outcome = program.wait();
+  EXPECT_EQ(outcome.exit_code, 130) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("no video"));
+  EXPECT_EQ(folder.names("a"), before);
+}
+TEST_F(Render, AVideoThatCannotBeIsRefusedBeforeTheSimulation) {
+  for (const char* set : {"video.width=161", "camera={eye: [1, 1, 1], target: [1, 1, 1]}", "camera={fx: 100, fy: 100, width: 161}"}) {
+    const Outcome outcome = tapesim({"run", scene, "--out", (folder / "a").string(), "--video", "--set", set});
+    EXPECT_EQ(outcome.exit_code, 2) << set;
+    EXPECT_EQ(folder.names("a").size(), 0u) << set;
+  }
 }
 TEST_F(Render, MakesStillsAndAVideoFromAnyCameraAndRefusesWhatIsNotThere) {
   ASSERT_EQ(tapesim({"run", scene, "--out", (folder / "a").string()}).exit_code, 0);

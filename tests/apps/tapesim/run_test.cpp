@@ -1,8 +1,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sys/wait.h>
+
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -108,6 +111,12 @@ TEST_F(Run, ResumedEndsInTheStateAndTheFilesOfAnUninterruptedOne) {
   const std::string steps = read(folder / "parts" / "steps.csv");
   EXPECT_EQ(std::count(steps.begin(), steps.end(), '\n'), 1 + 12);
 }
+TEST_F(BadInput, ASnapshotGoesOnOnlyWithItsTimeStep) {
+  ASSERT_EQ(run("a", {"--steps", "6"}).exit_code, 0);
+  const Outcome outcome = run("b", {"--resume", (folder / "a" / "snapshot.h5").string(), "--set", "time.dt=0.02"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("step 6 at 0.06 s does not fit time.dt = 0.02"));
+}
 TEST_F(Run, ThreadsDoNotChangeABit) {
   ASSERT_EQ(run("one", {"--threads", "1"}).exit_code, 0);
   for (const char* threads : {"2", "8"}) {
@@ -120,6 +129,8 @@ TEST_F(Run, ASettingFromOutsideReplacesTheSceneFiles) {
   ASSERT_EQ(run("a", {"--steps", "1", "--set", "strip.length=0.03", "--set", "solver.velocity_tol=1e-4"}).exit_code, 0);
   EXPECT_EQ(report("a")["settings"]["strips"]["tape"]["length"], 0.03);
   EXPECT_EQ(report("a")["settings"]["solver"]["velocity_tol"], 1e-4);
+  EXPECT_EQ(report("a")["settings"]["contact"]["dhat"], 1.8e-4) << "that of the film, where the scene gives none";
+  EXPECT_EQ(report("a")["settings"]["strips"]["tape"]["cell_length"], 0.01) << "whole cells: 30 mm over 9.5 mm is 3";
 }
 TEST_F(Run, CtrlCEndsTheStepWritesEverythingAndSaysHowToGoOn) {
   Program program({"run", scene, "--out", (folder / "a").string(), "--set", "time.duration=1000"});
@@ -154,12 +165,30 @@ TEST_F(BadInput, ASettingOutOfItsRangeIsNamedWithWhatIsAllowed) {
   }
   EXPECT_THAT(run("a", {"--set", "time.dt=-1"}).err, testing::AllOf(HasSubstr("time.dt"), HasSubstr("(0, 1]"), HasSubstr("s")));
 }
+TEST_F(BadInput, AFigureThatTheSceneHasNotIsNamedWithItsLine) {
+  const Outcome unknown = run("a", {"--set", "record.figures=[weight]"});
+  EXPECT_THAT(unknown.err, testing::AllOf(HasSubstr("--set: record.figures = [weight]"), HasSubstr("rest_speed")));
+  const Outcome unfit =
+      tapesim({"check", folder.file("bad.yaml", std::string(kScene) + "# 10\n"), "--set", "record.figures=[capstan_ratio]"});
+  EXPECT_EQ(unfit.exit_code, 2);
+  EXPECT_THAT(unfit.err, HasSubstr("fewer than two grips"));
+}
+TEST_F(BadInput, ACommandThatThereIsNotIsNamedWithThoseThereAre) {
+  const Outcome wrong = tapesim({"rum"}), none = tapesim({"fly"}), later = tapesim({"wind", "film.yaml"});
+  EXPECT_THAT(wrong.err, HasSubstr("rum: no such command; did you mean run?"));
+  EXPECT_THAT(none.err, testing::AllOf(HasSubstr("fly: no such command"), HasSubstr("check, explain, info, render, run, study")));
+  EXPECT_THAT(later.err, HasSubstr("wind: not in this build"));
+  for (const Outcome& outcome : {wrong, none, later}) EXPECT_EQ(outcome.exit_code, 2);
+}
+TEST_F(BadInput, AnOutputThatCannotBeWrittenIsAnError) {
+  EXPECT_EQ(WEXITSTATUS(std::system((std::string(TAPESIM) + " info > /dev/full 2> /dev/null").c_str())), 2);
+}
 TEST_F(BadInput, AWrongCommandLineExitsWithTwo) {
   EXPECT_EQ(tapesim({}).exit_code, 2);
-  EXPECT_EQ(tapesim({"fly"}).exit_code, 2);
   EXPECT_EQ(tapesim({"run"}).exit_code, 2);
   EXPECT_EQ(run("a", {"--backend", "abacus"}).exit_code, 2);
   EXPECT_EQ(run("a", {"--steps", "-3"}).exit_code, 2);
+  EXPECT_EQ(run("a", {"--steps", "1000000000000"}).exit_code, 2);
   EXPECT_EQ(tapesim({"run", "--help"}).exit_code, 0);
 }
 TEST_F(BadInput, AnIntersectingStartIsRefusedByCheckAndRun) {

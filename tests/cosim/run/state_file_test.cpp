@@ -5,6 +5,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <limits>
 
 #include "tape/core/error.hpp"
 
@@ -87,6 +88,33 @@ TEST_F(StateFile, AMissingOrDamagedFileIsRefusedByName) {
   } catch (const tape::InputError& e) {
     EXPECT_NE(std::string(e.what()).find("cut.h5"), std::string::npos);
   }
+}
+TEST_F(StateFile, ArraysThatDoNotFitTogetherAreRefused) {
+  const auto refused = [&](const RecordedMesh& mesh, const RecordedFrame& first) {
+    {
+      StateWriter writer(file, mesh);
+      writer.add(first);
+      writer.commit();
+    }
+    try {
+      const StateReader reader(file);
+      reader.frame(0);
+    } catch (const tape::InputError& e) {
+      return std::string(e.what()).find("damaged") != std::string::npos;
+    }
+    return false;
+  };
+  EXPECT_FALSE(refused(kMesh, frame(0)));
+  RecordedMesh of_no_body = kMesh, of_no_vertex = kMesh;
+  of_no_body.body[4] = 1;
+  of_no_vertex.triangles[1] = {3, 4, 6};
+  EXPECT_TRUE(refused(of_no_body, frame(0)));
+  EXPECT_TRUE(refused(of_no_vertex, frame(0)));
+  RecordedFrame short_frame = frame(0), not_finite = frame(0);
+  short_frame.x.pop_back();
+  not_finite.x[1].y() = std::numeric_limits<Real>::quiet_NaN();
+  EXPECT_TRUE(refused(kMesh, short_frame));
+  EXPECT_TRUE(refused(kMesh, not_finite));
 }
 TEST(NewFile, AFullDiskIsAnInputErrorThatNamesTheFile) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";

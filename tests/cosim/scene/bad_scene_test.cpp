@@ -39,6 +39,8 @@ TEST(BadScene, IsRefusedByFileLineAndKey) {
       {"time: {dt: nan}", ":4: ", {"time.dt = nan", "out of range"}},
       {"time: {dt: 1e999}", ":4: ", {"time.dt = 1e999", "out of range"}},
       {"time: {duration: [1]}", ":4: ", {"time.duration = [1]", "must be a number"}},
+      {"time: {dt: 1e-300}", ":4: ", {"time.duration", "steps of time.dt", "at most 1e+09"}},
+      {"time: {duration: 1e300}", ":4: ", {"time.duration = 1e300", "steps", "at most 1e+09"}},
       {"time: 3", ":4: ", {"time = 3", "must be a section"}},
       {"time:\n  dt: 0.01\n  dt: 0.02", ":6: ", {"dt", "duplicate key", ":5"}},
       {"time: {dt: 0.01", ":", {"not valid YAML"}},
@@ -105,6 +107,11 @@ TEST(BadScene, IsRefusedByFileLineAndKey) {
   }
 }
 
+TEST(BadScene, ANameThatIsNoFolderAndASceneOfNothingAreRefused) {
+  EXPECT_NE(refusal("film: vinyl_19mm\nstrip: {length: 0.1}\nscene: ../bad\n").find("bad.yaml:3: scene = ../bad: "), std::string::npos);
+  EXPECT_NE(refusal("film: vinyl_19mm\n").find("neither a strip nor a body"), std::string::npos);
+}
+
 TEST(BadScene, AMistakeInTheStripIsRefused) {
   const std::pair<const char*, const char*> cases[] = {
       {"strip: {length: 0}", "strip.length = 0"},
@@ -132,6 +139,7 @@ TEST(BadScene, AnOverrideIsRefusedByItsOwnText) {
   const std::pair<const char*, const char*> cases[] = {
       {"strip.length=abc", "--set: strip.length = abc: not a number"},
       {"strip.length", "must be path.to.key=value"},
+      {"strip.length=", "has no value"},
       {"strip..length=1", "must be path.to.key=value"},
       {"strip.lengt=1", "did you mean length?"},
       {"scene.name.x=1", "which is no section"},
@@ -155,7 +163,7 @@ TEST(BadScene, FilesThatAreMissingEmptyOrFoldersAreRefused) {
     }
     return "";
   };
-  EXPECT_NE(load("nowhere/none.yaml").find("nowhere/none.yaml does not exist"), std::string::npos);
+  EXPECT_NE(load("nowhere/none.yaml").find("nowhere/none.yaml: there is no such file"), std::string::npos);
   EXPECT_NE(load(testing::TempDir()).find("is not a file"), std::string::npos);
   const fs::path empty = fs::path(testing::TempDir()) / "empty.yaml";
   std::ofstream(empty) << "# nothing\n";
@@ -173,6 +181,7 @@ TEST(BadScene, AMistakeInAFilmOrAMeshNamesThatFile) {
   std::ofstream(folder / "fin.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nf 1 2 3\nf 2 1 4\nf 1 2 5\n";
   std::ofstream(folder / "cut.stl") << "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0";
   std::ofstream(folder / "none.obj") << "# nothing\n";
+  std::ofstream(folder / "empty.stl") << "";
   const auto message = [&](const std::string& text) { return refusal(text, folder / "scene.yaml"); };
   const auto mesh = [&](const std::string& file) { return message("bodies:\n  a: {shape: mesh, file: " + file + "}\n"); };
   EXPECT_NE(message("film: thin\n").find("thin.yaml:1: density: missing"), std::string::npos) << message("film: thin\n");
@@ -183,4 +192,5 @@ TEST(BadScene, AMistakeInAFilmOrAMeshNamesThatFile) {
   EXPECT_NE(mesh("fin.obj").find("not manifold: 3 triangles"), std::string::npos) << mesh("fin.obj");
   EXPECT_NE(mesh("cut.stl").find("scene.yaml:2: bodies.a.file"), std::string::npos) << mesh("cut.stl");
   EXPECT_NE(mesh("none.obj").find("scene.yaml:2: bodies.a.file"), std::string::npos) << mesh("none.obj");
+  EXPECT_NE(mesh("empty.stl").find("empty.stl: the file is empty"), std::string::npos) << mesh("empty.stl");
 }

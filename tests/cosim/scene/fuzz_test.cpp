@@ -2,21 +2,26 @@
 
 #include <cctype>
 #include <chrono>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <random>
 #include <sstream>
 
+#include <unistd.h>
+
+#include "cosim/run/read_run.hpp"
+#include "cosim/run/state_file.hpp"
 #include "cosim/scene/mesh_file.hpp"
-#include "cosim/scene/read_scene.hpp"
 #include "tape/core/error.hpp"
 #include "tape/model/mesh_check.hpp"
+#include "tape/model/strip_mesh.hpp"
+#include "tape/step/stepper.hpp"
 using namespace cosim;
 
-/// Broken scenes and meshes must be refused with an InputError, or accepted; nothing else may happen.
-/// TAPE_FUZZ_SECONDS=60 in the environment goes on for that long; otherwise a fixed number of mutations runs.
+/// Broken scenes, meshes and recordings must be refused with an InputError, or accepted; nothing else may happen.
+/// LongFuzz, with four tests of 20 s each, is the same for longer.
 namespace {
 namespace fs = std::filesystem;
 
@@ -67,12 +72,19 @@ class Mutator {
   std::mt19937_64 generator_;
 };
 
-/// Runs `feed` on mutations of `seeds`: `count` of them, or as many as TAPE_FUZZ_SECONDS allows.
-void fuzz(const std::vector<std::string>& seeds, int count, const std::function<void(const std::string& text, std::size_t seed)>& feed) {
-  const char* seconds = std::getenv("TAPE_FUZZ_SECONDS");
+/// How long a test goes on: a number of mutations, or a time.
+struct Length {
+  int mutations = 0;
+  double seconds = 0;
+};
+constexpr Length kLong{.seconds = 20};
+
+/// Runs `feed` on mutations of `seeds`.
+void fuzz(const std::vector<std::string>& seeds, Length length,
+          const std::function<void(const std::string& text, std::size_t seed)>& feed) {
   const auto start = std::chrono::steady_clock::now();
   const auto more = [&](int i) {
-    return seconds ? std::chrono::steady_clock::now() - start < std::chrono::duration<double>(std::atof(seconds)) : i < count;
+    return i < length.mutations || std::chrono::steady_clock::now() - start < std::chrono::duration<double>(length.seconds);
   };
   Mutator mutate(20240607);
   int accepted = 0, refused = 0;
@@ -94,30 +106,65 @@ void fuzz(const std::vector<std::string>& seeds, int count, const std::function<
   testing::Test::RecordProperty("accepted", accepted);
   testing::Test::RecordProperty("refused", refused);
 }
-}  // namespace
 
-TEST(Fuzz, BrokenScenesAreRefusedInWords) {
+Real triangle_count(const tape::Scene& scene) {
+  Real count = 0;
+  for (const tape::Strip& strip : scene.strips) {
+    const Real cells = strip.mesh.length / tape::cell_length(strip.mesh, scene.films[static_cast<std::size_t>(strip.film)].width);
+    count += 4 * cells * strip.mesh.cells_across;
+  }
+  for (const tape::Body& body : scene.bodies) count += static_cast<Real>(body.mesh.triangles.size());
+  return count;
+}
+
+/// What `tapesim run` does with a scene, up to its first step. A step may fail, in words, and then leaves the state as it was.
+void simulate_one_step(SceneFile file) {
+  RunInput input = read_run(std::move(file));
+  if (triangle_count(input.setup.scene) > 2e4) return;  // sound, but too slow here
+  input.setup.newton.max_newton = 3;
+  input.setup.newton.retries = 1;
+  const tape::World world = tape::World::build(input.setup);
+  tape::State state = tape::State::start(world);
+  const std::string before = state.hash();
+  const tape::StepReport report = make_stepper(tape::Backend::cpu, world)->step(state);
+  EXPECT_EQ(report.ok, report.failure.empty());
+  if (!report.ok) {
+    EXPECT_EQ(state.hash(), before) << report.failure;
+  }
+  for (const Vec3& x : state.x) ASSERT_TRUE(x.allFinite());
+  for (const tape::BodyState& body : state.bodies) ASSERT_TRUE(body.pose.position.allFinite() && body.pose.rotation.allFinite());
+}
+
+void fuzz_scenes(Length length) {
   std::vector<std::string> seeds;
   const fs::path folder = fs::path(TAPE_SOURCE_DIR) / "data" / "scenes";
   for (const auto& entry : fs::directory_iterator(folder))
     if (entry.path().extension() == ".yaml") seeds.push_back(read_whole_file(entry.path(), "test"));
   std::sort(seeds.begin(), seeds.end());
-  fuzz(seeds, 1500, [&](const std::string& text, std::size_t) {
-    const SceneFile file = SceneFile::parse(text, folder / "fuzz.yaml");
-    read_scene(file);
-    file.require_all_used();
-  });
+  fuzz(seeds, length, [&](const std::string& text, std::size_t) { simulate_one_step(SceneFile::parse(text, folder / "fuzz.yaml")); });
 }
 
-TEST(Fuzz, BrokenOverridesAreRefusedInWords) {
-  const fs::path scene = fs::path(TAPE_SOURCE_DIR) / "data" / "scenes" / "demo.yaml";
+void fuzz_overrides(Length length) {
+  const fs::path scene = fs::path(TAPE_SOURCE_DIR) / "data" / "scenes" / "drape.yaml";
   const std::string text = read_whole_file(scene, "test");
-  const std::vector<std::string> seeds{"strip.length=0.2", "bodies.drum.waypoints.0.time=3", "script.2.by=[0, 0, 1]",
-                                       "film={from: vinyl_19mm, poisson: 0}"};
-  fuzz(seeds, 400, [&](const std::string& change, std::size_t) { read_scene(SceneFile::parse(text, scene, {change})); });
+  const std::vector<std::string> seeds{"strip.length=0.05",
+                                       "bodies.drum.position=[0, 0, -0.01]",
+                                       "bodies.drum.motion=dynamic",
+                                       "film={from: vinyl_19mm, poisson: 0}",
+                                       "strip.cells_across=3",
+                                       "strip.cell_length=0.004",
+                                       "time.dt=0.02",
+                                       "contact.dhat=2e-4",
+                                       "contact.kappa=1e5",
+                                       "solver.velocity_tol=1e-3",
+                                       "solver.linear=cholesky",
+                                       "solver.hessian=exact",
+                                       "solver.stop=work",
+                                       "seed=7"};
+  fuzz(seeds, length, [&](const std::string& change, std::size_t) { simulate_one_step(SceneFile::parse(text, scene, {change})); });
 }
 
-TEST(Fuzz, BrokenMeshesAreRefusedInWords) {
+void fuzz_meshes(Length length) {
   std::string stl = "solid t\n";
   for (const char* corners : {"0 0 0 0 2 0 1 0 0", "0 0 0 1 0 0 0 0 3", "0 0 0 0 0 3 0 2 0", "1 0 0 0 2 0 0 0 3"}) {
     std::istringstream stream(corners);
@@ -143,6 +190,37 @@ TEST(Fuzz, BrokenMeshesAreRefusedInWords) {
 <library_visual_scenes><visual_scene id="s" name="s"><node id="n"><instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
 <scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
   const char* formats[] = {"stl", "obj", "stl", "dae"};
-  fuzz({stl, obj, binary, dae}, 400,
+  fuzz({stl, obj, binary, dae}, length,
        [&](const std::string& bytes, std::size_t seed) { check_mesh(parse_mesh(bytes, formats[seed], 1, "body t"), "body t", true); });
 }
+
+/// Mutations of a recording: read as pictures of it are.
+void fuzz_recordings(Length length) {
+  const fs::path folder = fs::temp_directory_path() / ("tape_fuzz_test_" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  const tape::World world =
+      tape::World::build(read_run(SceneFile::load(fs::path(TAPE_SOURCE_DIR) / "data" / "scenes" / "drape.yaml")).setup);
+  {
+    StateWriter writer(folder / "state.h5", RecordedMesh::of(world, "fov: 30\n"));
+    for (int i = 0; i < 3; ++i) writer.add(RecordedFrame::of(world, tape::State::start(world), {}));
+    writer.commit();
+  }
+  const std::string whole = read_whole_file(folder / "state.h5", "test");
+  fuzz({whole.substr(0, 4096)}, length, [&](const std::string& start, std::size_t) {  // where the structure stands
+    std::ofstream(folder / "fuzz.h5", std::ios::binary) << start + (start.size() == 4096 ? whole.substr(4096) : "");
+    const StateReader reader(folder / "fuzz.h5");
+    for (int i = 0; i < std::min(reader.frames(), 3); ++i) vertex_positions(reader.mesh(), reader.frame(i));
+  });
+  fs::remove_all(folder);
+}
+}  // namespace
+
+TEST(Fuzz, BrokenScenesAreRefusedInWords) { fuzz_scenes({.mutations = 300}); }
+TEST(Fuzz, BrokenOverridesAreRefusedInWords) { fuzz_overrides({.mutations = 100}); }
+TEST(Fuzz, BrokenMeshesAreRefusedInWords) { fuzz_meshes({.mutations = 200}); }
+TEST(Fuzz, BrokenRecordingsAreRefusedInWords) { fuzz_recordings({.mutations = 200}); }
+
+TEST(LongFuzz, BrokenScenesAreRefusedInWords) { fuzz_scenes(kLong); }
+TEST(LongFuzz, BrokenOverridesAreRefusedInWords) { fuzz_overrides(kLong); }
+TEST(LongFuzz, BrokenMeshesAreRefusedInWords) { fuzz_meshes(kLong); }
+TEST(LongFuzz, BrokenRecordingsAreRefusedInWords) { fuzz_recordings(kLong); }

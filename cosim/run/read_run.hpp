@@ -17,5 +17,5 @@ struct RunInput {
 /// Reads the scene, the settings of every effect and of the solver, `effects` (switches) and `record`. Whoever reads more
 /// sections does so from `file`, then calls its `require_all_used`.
 /// @throws InputError "file:line: key = value: reason"
-RunInput load_run(const std::filesystem::path& scene, const std::vector<std::string>& overrides);
+RunInput read_run(SceneFile scene);
 }  // namespace cosim

@@ -1,10 +1,10 @@
-#include "cosim/run/load_run.hpp"
+#include "cosim/run/read_run.hpp"
 
 #include "cosim/scene/read_scene.hpp"
 
 namespace cosim {
-RunInput load_run(const std::filesystem::path& scene, const std::vector<std::string>& overrides) {
-  RunInput input{.file = SceneFile::load(scene, overrides), .setup = {}, .record = {}, .figures = {}};
+RunInput read_run(SceneFile scene) {
+  RunInput input{.file = std::move(scene), .setup = {}, .record = {}, .figures = {}};
   const SceneFile& file = input.file;
   input.setup.scene = read_scene(file);
   std::vector<std::string> effects;
