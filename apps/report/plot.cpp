@@ -35,24 +35,33 @@ std::string data_block(const std::string& name, std::vector<PlotPoint> points) {
   return text + "EOD\n";
 }
 
+/// Range of a logarithmic axis: that of the values, and room on both sides.
+std::string range(const std::vector<PlotPoint>& points, Real PlotPoint::*axis, Real below, Real above) {
+  const auto less = [&](const PlotPoint& a, const PlotPoint& b) { return a.*axis < b.*axis; };
+  const auto [low, high] = std::minmax_element(points.begin(), points.end(), less);
+  return " [" + tape::to_text((*low).*axis / below) + ':' + tape::to_text((*high).*axis * above) + "]\n";
+}
+
 std::string script(const Plot& plot, const std::string& terminal, const std::string& output) {
-  std::vector<PlotPoint> all, front;
+  std::vector<PlotPoint> all, front, others;
   for (const PlotPoint& p : plot.points)
     if (can_show(p)) {
       all.push_back(p);
-      if (p.pareto) front.push_back(p);
+      (p.pareto ? front : others).push_back(p);
     }
   if (all.empty()) throw InputError("plot \"" + plot.title + "\": no point is positive and finite");
   std::string text = "set terminal " + terminal + "\nset output " + quoted(output) + '\n';
   text += "set title " + quoted(plot.title) + " noenhanced\nset xlabel " + quoted(plot.x_label) + " noenhanced\n";
-  text += "set ylabel " + quoted(plot.y_label) +
-          " noenhanced\nset logscale xy\nset format '%g'\nset grid\nset key bottom left\nset offsets graph 0.05, graph 0.25, graph 0.1, "
-          "graph 0.05\n";
-  text += data_block("all", all) + data_block("front", front);
+  text += "set ylabel " + quoted(plot.y_label) + " noenhanced\nset logscale xy\nset format '%g'\nset grid\nset key top right\n";
+  text += "set xrange" + range(all, &PlotPoint::x, 2, 10) + "set yrange" + range(all, &PlotPoint::y, 2, 2);
+  text += data_block("all", all) + data_block("front", front) + data_block("others", others);
   text += "plot $all using 1:2 with points pointtype 7 pointsize 0.8 linecolor rgb '#7a8ba8' title 'runs'";
   if (!front.empty())
     text += ", $front using 1:2 with linespoints pointtype 6 pointsize 1.8 linewidth 2 linecolor rgb '#c1440e' title 'Pareto front'";
-  return text + ", $all using 1:2:3 with labels left offset 0.8,0.4 font ',9' noenhanced notitle\n";
+  // numbers below their points, the longer labels of the front above and to the right of theirs
+  if (!others.empty()) text += ", $others using 1:2:3 with labels center offset 0,-0.8 font ',9' noenhanced notitle";
+  if (!front.empty()) text += ", $front using 1:2:3 with labels left offset 0.6,0.7 font ',9' noenhanced notitle";
+  return text + '\n';
 }
 
 void run_gnuplot(const std::string& text) {
