@@ -10,6 +10,7 @@
 #include "apps/report/strain.hpp"
 #include "apps/tapesim/interrupt.hpp"
 #include "apps/tapesim/progress.hpp"
+#include "cosim/run/summary.hpp"
 
 namespace tape::tapesim {
 namespace {
@@ -86,22 +87,23 @@ class Studio {
     return report::vertex_strain(mesh.triangles, mesh.rest, x, mesh.strip_vertices);
   }
 
-  /// The bounds of the whole motion, and the range of values that are to be seen in it.
+  /// The bounds of the whole motion, and the range of values that are to be seen in it: up to what 95 % of the states stay below, so
+  /// that a short impact does not leave all others dark.
   void look_through() {
-    std::vector<Real> extremes;
+    std::vector<Real> largest;  // of each state
     for (int i = 0; i < recording_.frames(); ++i) {
       const RecordedFrame frame = recording_.frame(i);
       const std::vector<Vec3> x = vertex_positions(recording_.mesh(), frame);
       for (const Vec3& p : x) everything_.extend(p);
       if (params_.view.color == ColorBy::material) continue;
+      largest.push_back(0);
       for (const Real value : values(frame, x))
-        if (std::isfinite(value)) extremes.push_back(value);
-      if (extremes.empty()) continue;
-      const auto [low, high] = std::minmax_element(extremes.begin(), extremes.end());
-      extremes = {*low, *high};
+        if (value > largest.back()) largest.back() = value;
     }
     const bool strain = params_.view.color == ColorBy::strain;
-    bar_ = render::bar_over(extremes, strain ? "largest strain" : "contact force", strain ? "" : "N");
+    const cosim::Distribution peaks = cosim::distribution(largest);
+    const std::string cut = peaks.max > peaks.p95 ? ", peaks cut" : "";
+    bar_ = render::bar_over({0, peaks.p95}, (strain ? "largest strain" : "contact force") + cut, strain ? "" : "N");
     bar_.low = 0;  // both are magnitudes
   }
 

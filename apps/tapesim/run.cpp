@@ -53,7 +53,8 @@ cosim::RunLog simulate(const RunArguments& arguments, const LoadedWorld& loaded,
 void print_summary(const cosim::RunSummary& s, const RunFolder& folder) {
   using report::rounded;
   fmt::print("{}: {} steps, {} s simulated in {} s ({} ms a step), Newton {} a step, linear solver {}\n", s.status, s.steps,
-             rounded(s.sim_time), rounded(s.wall), rounded(s.step_ms.mean), rounded(s.newton_mean), s.linear_solver);
+             rounded(s.sim_time), rounded(s.wall), rounded(s.step_ms.mean), rounded(s.newton_mean),
+             s.linear_solver.empty() ? "none" : s.linear_solver);
   if (!s.failure.empty()) fmt::print("failed at {}\n", s.failure);
   for (const auto& [name, value] : s.figures) fmt::print("  {} = {}\n", name, rounded(value));
   for (const cosim::Condition& c : s.conditions)
