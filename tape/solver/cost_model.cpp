@@ -6,7 +6,8 @@
 namespace tape {
 namespace {
 // Measured by tests/bench/solver_bench.cpp on one thread of a 2.4-GHz core with AVX2, g++ 12, OpenBLAS 0.3.21 (README: cost model).
-constexpr Real kBandRate = 4e9;             // [flop/s] band factorisation, kd near 50
+constexpr Real kBandRate = 14e9;            // [flop/s] band factorisation, kd near 50
+constexpr Real kBorderRate = 4e9;           // [flop/s] couplings to the dense border: triangular solves, Schur complement
 constexpr Real kStreamRate = 3e9;           // [flop/s] SpMV and triangular solves
 constexpr Real kAnalysisPerBlock = 1e-6;    // [s] ordering and symbolic analysis per stored block
 constexpr Real kFactorPerEntry = 40e-9;     // [s] Cholesky per entry of the envelope: assembly and small supernodes
@@ -115,11 +116,11 @@ LinearCosts linear_costs(const HostBlocks& a, const SystemLayout& layout) {
   const Real sweep = 4 * (s.band_entries + s.unknowns * s.border + s.border * s.border);
   LinearCosts costs;
   costs.cholesky = kAnalysisPerBlock * blocks + envelope_seconds(graph_without_bodies(a, layout)) +
-                   dense_border(6.0 * static_cast<Real>(layout.body_blocks.size())) / kBandRate;
+                   dense_border(6.0 * static_cast<Real>(layout.body_blocks.size())) / kBorderRate;
   costs.pcg_jacobi = kJacobiIterations * (multiply + 18.0 * a.n) / kStreamRate;
   const Real iterations = s.dropped > 0 ? kDropIterations + kDropShareIterations * s.dropped / blocks : kExactIterations;
-  costs.pcg_strip =
-      (s.band_flops + 2 * s.band_entries * s.border + dense_border(s.border)) / kBandRate + iterations * (multiply + sweep) / kStreamRate;
+  costs.pcg_strip = s.band_flops / kBandRate + (2 * s.band_entries * s.border + dense_border(s.border)) / kBorderRate +
+                    iterations * (multiply + sweep) / kStreamRate;
   return costs;
 }
 

@@ -77,6 +77,7 @@ const bool kRegistered = [] {
     benchmark::RegisterBenchmark((name + "/projected_hessian").c_str(), per_element<T, What::projected_hessian>);
   });
   benchmark::RegisterBenchmark("barrier/closed_form_against_12x12", against_eigen_decomposition<Barrier>);
+  benchmark::RegisterBenchmark("friction/closed_form_against_12x12", against_eigen_decomposition<Friction>);
   benchmark::RegisterBenchmark("membrane/closed_form_against_9x9", against_eigen_decomposition<Membrane>);
   benchmark::RegisterBenchmark("bending/closed_form_against_18x18", against_eigen_decomposition<Bending>);
   return true;
