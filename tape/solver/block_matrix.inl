@@ -187,7 +187,7 @@ void BlockMatrix::diagonal(Span<Mat3> out) const {
 
 void BlockMatrix::download_pattern(HostBlocks& host) const {
   if (host.pattern == pattern_ && host.n == n_) return;
-  host = merge_patterns(n_, fixed_.keys().download(), contact_.keys().download());
+  merge_patterns(n_, fixed_.keys().download(), contact_.keys().download(), host);
   host.pattern = pattern_;
 }
 

@@ -8,9 +8,9 @@ std::uint64_t next_pattern_id() {
   return ++last;
 }
 
-HostBlocks merge_patterns(int n, const std::vector<std::uint64_t>& fixed, const std::vector<std::uint64_t>& contact) {
-  HostBlocks host;
+void merge_patterns(int n, const std::vector<std::uint64_t>& fixed, const std::vector<std::uint64_t>& contact, HostBlocks& host) {
   host.n = n;
+  for (std::vector<int>* list : {&host.fixed, &host.contact, &host.col}) list->clear();
   host.row_begin.assign(static_cast<std::size_t>(n) + 1, 0);
   for (std::size_t f = 0, c = 0; f < fixed.size() || c < contact.size();) {
     const std::uint64_t key_f = f < fixed.size() ? fixed[f] : kNoBlock, key_c = c < contact.size() ? contact[c] : kNoBlock;
@@ -22,7 +22,6 @@ HostBlocks merge_patterns(int n, const std::vector<std::uint64_t>& fixed, const 
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) host.row_begin[i + 1] += host.row_begin[i];
   host.values.resize(host.col.size());
-  return host;
 }
 
 void sum_groups(Span<const Mat3> fixed, Span<const Mat3> contact, HostBlocks& host) {

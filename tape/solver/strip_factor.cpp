@@ -57,17 +57,21 @@ bool factor_band(Real* lower, int n, int kd) {
 }  // namespace
 
 void StripFactor::set_pattern(const HostBlocks& a) {
-  bands_.clear();
+  bands_.resize(layout_.strips.size());
   band_of_.assign(at(a.n), -1);
   place_.assign(at(a.n), 0);
   strip_unknowns_ = border_unknowns_ = 0;
-  for (const StripLayout& strip : layout_.strips) {
+  for (std::size_t s = 0; s < bands_.size(); ++s) {
+    const StripLayout& strip = layout_.strips[s];
     TAPE_CHECK(strip.first_block >= 0 && strip.first_block + strip.blocks <= a.n);
     for (int i = 0; i < strip.blocks; ++i) {
-      band_of_[at(strip.first_block + i)] = static_cast<int>(bands_.size());
+      band_of_[at(strip.first_block + i)] = static_cast<int>(s);
       place_[at(strip.first_block + i)] = strip_unknowns_ / 3 + i;
     }
-    bands_.push_back({strip.first_block, strip.blocks, fixed_width(a, strip.first_block, strip.first_block + strip.blocks), {}});
+    Band& band = bands_[s];  // its memory is used again
+    band.first_block = strip.first_block;
+    band.blocks = strip.blocks;
+    band.width = fixed_width(a, strip.first_block, strip.first_block + strip.blocks);
     strip_unknowns_ += 3 * strip.blocks;
   }
   for (int i = 0; i < a.n; ++i)
