@@ -119,8 +119,8 @@ void add_grip(Assembly& a, const Scene& scene, const Grip& grip) {
   a.grips.push_back(std::move(part));
 }
 
-/// Stiffness [N/m] of a grip that names none: so stiff that the weight of all that moves shifts it by a thousandth of a
-/// micrometre, and that pulling on a strip stretches the strip ten thousand times as much.
+/// Stiffness [N/m] of a grip that names none: the weight of all that moves shifts it by a tenth of a micrometre, and pulling on a strip
+/// stretches the strip ten thousand times as much. Stiffer, what a stop rule leaves of the positions would read as newtons.
 Real default_stiffness(const Assembly& a, const Scene& scene) {
   Real total = 0, strip = 0;
   for (Real m : a.mass) total += m;
@@ -128,7 +128,7 @@ Real default_stiffness(const Assembly& a, const Scene& scene) {
     const Film& film = scene.films[static_cast<std::size_t>(s.film)];
     strip = std::max(strip, film.membrane_modulus * film.thickness * film.width / s.mesh.length);
   }
-  return std::max(total * 9.81 / 1e-9, 1e4 * strip);
+  return std::max(total * 9.81 / 1e-7, 1e4 * strip);
 }
 
 void choose_stiffness(Assembly& a, const Scene& scene) {

@@ -64,6 +64,16 @@ TAPE_HD inline Real round_off(const VertexPath (&path)[4], Real t) {
   }
   return 16 * std::numeric_limits<Real>::epsilon() * size;
 }
+/// Unit vector along the offset between closest points, `along`. Between a face and a vertex or two edges it is the common normal; its
+/// product with edges of metres then is zero to round-off, while that of the offset carries the error of the closest points.
+TAPE_HD inline Vec3 separating_direction(PairKind kind, const Vec3 (&x)[4], const Closest& c, const Vec3& along) {
+  if (c.free < 2) return along;
+  const bool vertex = kind == PairKind::vertex_triangle;
+  const Vec3 a = vertex ? x[2] - x[1] : x[1] - x[0], b = vertex ? x[3] - x[1] : x[3] - x[2], n = a.cross(b);
+  const Real length2 = n.squaredNorm();
+  if (!(length2 > 1e-12 * a.squaredNorm() * b.squaredNorm())) return along;
+  return n / (n.dot(along) > 0 ? std::sqrt(length2) : -std::sqrt(length2));
+}
 TAPE_HD inline bool at_rest(const Motion& m) {
   for (int i = 0; i < 4; ++i)
     if (!m.velocity[i].isZero(0) || m.bend[i] > 0) return false;
@@ -90,7 +100,7 @@ TAPE_HD inline PairStep largest_step(PairKind kind, const VertexPath (&path)[4],
     const Vec3 p = combine(c.weight, m.x);
     const Real d = p.norm();
     if (!(d > 0)) return {t, false};
-    const Vec3 n = p / d;
+    const Vec3 n = detail::separating_direction(kind, m.x, c, p / d);
     Real height[4], rate[4];  // of the vertices along n: the first primitive stands above the second
     for (int i = 0; i < 4; ++i) height[i] = n.dot(m.x[i]), rate[i] = n.dot(m.velocity[i]);
     const Real taken = xi + detail::round_off(path, t);

@@ -14,6 +14,7 @@ struct SurfaceView {
   Span<const SurfaceEdge> edges;
   Span<const SurfaceTriangle> triangles;
   Span<const int> vertex_carrier, edge_carrier, triangle_carrier;  ///< body that carries the whole primitive, kFixed or kFree
+  Span<const int> leader;  ///< [objects] free vertex from which pairs inside the object are seen, -1 if it has none
   int materials;
   Real dhat;   ///< [m] reach of vertex-triangle pairs beyond xi
   Real guard;  ///< [m] reach of the barrier of edge-edge pairs and between a rim and an open surface
@@ -27,26 +28,56 @@ struct SurfaceView {
   }
 };
 
-/// Ball around a trust box: the vertex stays within `radius` of `centre`.
-struct Ball {
-  Vec3 centre;  ///< [m]
-  Real radius;  ///< [m]
+/// Trust box of a vertex in the world, and the one seen from the leader of its object (the same without a leader).
+struct Trust {
+  Box world, inner;
 };
+/// Ball around a trust box: the vertex stays within `radius` of `centre`; seen from the leader within `inner_radius` of a point that
+/// is as far from `centre` for all vertices of the object.
+struct Ball {
+  Vec3 centre;                ///< [m]
+  Real radius, inner_radius;  ///< [m]
+};
+/// Path of a vertex that stands for itself, seen from another that has moved by `shift` [m] since the rebuild.
+TAPE_HD inline VertexPath seen_from(const VertexPath& leader, const Vec3& shift, VertexPath path) {
+  path.centre -= shift;
+  path.velocity -= leader.velocity;
+  return path;
+}
 struct MakeTrust {
+  SurfaceView s;
   PathView paths;
   Real margin;
-  Span<Box> trust;
+  Span<Trust> trust;
   Span<Ball> ball;
   TAPE_HD void operator()(int v) const {
     const Box path = path_box(paths[v]);
-    trust[v] = paths.owner[v].block < 0 ? path : inflated(path, margin);
-    ball[v] = {trust[v].centre(), trust[v].radius()};
+    const int leader = s.leader[s.vertices[v].object];
+    Trust& t = trust[v];
+    t.world = paths.owner[v].block < 0 ? path : inflated(path, margin);
+    t.inner = leader < 0 ? t.world : inflated(path_box(seen_from(paths[leader], Vec3::Zero(), paths[v])), margin);
+    ball[v] = {t.world.centre(), t.world.radius(), t.inner.radius()};
+  }
+};
+struct StoreLeaders {
+  SurfaceView s;
+  PathView paths;
+  Span<Vec3> start;
+  TAPE_HD void operator()(int object) const {
+    if (s.leader[object] >= 0) start[object] = paths.x[s.leader[object]];
   }
 };
 struct InTrust {
+  SurfaceView s;
   PathView paths;
-  Span<const Box> trust;
-  TAPE_HD bool operator()(int v) const { return trust[v].contains(path_box(paths[v])); }
+  Span<const Trust> trust;
+  Span<const Vec3> leader_start;  ///< [objects] m, at the rebuild
+  TAPE_HD bool operator()(int v) const {
+    if (!trust[v].world.contains(path_box(paths[v]))) return false;
+    const int object = s.vertices[v].object, leader = s.leader[object];
+    if (leader < 0) return true;
+    return trust[v].inner.contains(path_box(seen_from(paths[leader], paths.x[leader] - leader_start[object], paths[v])));
+  }
 };
 struct And {
   TAPE_HD bool operator()(bool a, bool b) const { return a && b; }
@@ -58,21 +89,22 @@ struct Plus {
 /// Primitives as a query looks at them: at the centres of the balls, with all that the decision needs in one place.
 struct EdgeShape {
   Vec3 middle, half;  ///< [m] end points are middle -+ half
-  Real reach;         ///< [m] two edges that are farther apart than their reaches together never come within dhat
-  int v[2], carrier;
+  Real reach;         ///< [m] two edges that are farther apart than their reaches together never come within the guard's reach
+  Real inner_reach;   ///< [m] the same for two edges of one object
+  int v[2], carrier, object;
 };
 struct TriangleShape {
-  Vec3 x[3];    ///< [m]
-  Vec3 normal;  ///< unit, or zero without area
-  Real reach;   ///< [m]
-  int v[3], carrier;
+  Vec3 x[3];                ///< [m]
+  Vec3 normal;              ///< unit, or zero without area
+  Real reach, inner_reach;  ///< [m]
+  int v[3], carrier, object;
 };
 /// Covers the rounding of the tests below, which is some 1e-16 of the coordinates.
 inline constexpr Real kRounding = 1e-9;
 
 struct MakeEdges {
   SurfaceView s;
-  Span<const Box> trust;
+  Span<const Trust> trust;
   Span<const Ball> ball;
   Span<Lanes> boxes;
   Span<EdgeShape> shapes;
@@ -83,14 +115,16 @@ struct MakeEdges {
     shapes[i] = {.middle = 0.5 * (b0.centre + b1.centre),
                  .half = 0.5 * (b1.centre - b0.centre),
                  .reach = (std::max(b0.radius, b1.radius) + beyond) * (1 + kRounding),
+                 .inner_reach = (std::max(b0.inner_radius, b1.inner_radius) + beyond) * (1 + kRounding),
                  .v = {e.v[0], e.v[1]},
-                 .carrier = s.edge_carrier[i]};
-    boxes[i] = stored_box(inflated(joined(trust[e.v[0]], trust[e.v[1]]), beyond), i, s.edge_carrier[i] == kFixed);
+                 .carrier = s.edge_carrier[i],
+                 .object = s.vertices[e.v[0]].object};
+    boxes[i] = stored_box(inflated(joined(trust[e.v[0]].world, trust[e.v[1]].world), beyond), i, s.edge_carrier[i] == kFixed);
   }
 };
 struct MakeTriangles {
   SurfaceView s;
-  Span<const Box> trust;
+  Span<const Trust> trust;
   Span<const Ball> ball;
   Span<Lanes> boxes;
   Span<TriangleShape> shapes;
@@ -101,9 +135,11 @@ struct MakeTriangles {
     shapes[i] = {.x = {b0.centre, b1.centre, b2.centre},
                  .normal = (b1.centre - b0.centre).cross(b2.centre - b0.centre).normalized(),
                  .reach = (std::max(b0.radius, std::max(b1.radius, b2.radius)) + beyond) * (1 + kRounding),
+                 .inner_reach = (std::max(b0.inner_radius, std::max(b1.inner_radius, b2.inner_radius)) + beyond) * (1 + kRounding),
                  .v = {t.v[0], t.v[1], t.v[2]},
-                 .carrier = s.triangle_carrier[i]};
-    const Box all = joined(trust[t.v[0]], joined(trust[t.v[1]], trust[t.v[2]]));
+                 .carrier = s.triangle_carrier[i],
+                 .object = s.vertices[t.v[0]].object};
+    const Box all = joined(trust[t.v[0]].world, joined(trust[t.v[1]].world, trust[t.v[2]].world));
     boxes[i] = stored_box(inflated(all, beyond), i, s.triangle_carrier[i] == kFixed);
   }
 };
@@ -111,19 +147,19 @@ struct MakeTriangles {
 /// Finds the triangles that a vertex may touch.
 struct VertexQuery {
   SurfaceView s;
-  Span<const Box> trust;
+  Span<const Trust> trust;
   Span<const Ball> ball;
   Span<const TriangleShape> triangles;
   TreeView tree;
   template <class F>
   TAPE_HD void visit(int v, F&& f) const {
-    const int carrier = s.vertex_carrier[v];
-    const Real beyond = s.vertices[v].xi + s.dhat / 2, reach = ball[v].radius + beyond;
+    const int carrier = s.vertex_carrier[v], object = s.vertices[v].object;
+    const Real beyond = s.vertices[v].xi + s.dhat / 2, reach = ball[v].radius + beyond, inner_reach = ball[v].inner_radius + beyond;
     const Vec3 centre = ball[v].centre;
-    tree.visit(query_box(inflated(trust[v], beyond), 0, carrier == kFixed), [&](int t) {
+    tree.visit(query_box(inflated(trust[v].world, beyond), 0, carrier == kFixed), [&](int t) {
       const TriangleShape& b = triangles[t];
       const bool apart = v != b.v[0] && v != b.v[1] && v != b.v[2] && (carrier == kFree || carrier != b.carrier);
-      if (apart && near(centre, b, reach + b.reach)) f(t);
+      if (apart && near(centre, b, object == b.object ? inner_reach + b.inner_reach : reach + b.reach)) f(t);
     });
   }
   TAPE_HD static bool near(const Vec3& centre, const TriangleShape& b, Real range) {
@@ -148,13 +184,13 @@ struct VertexQuery {
 /// Finds the edges of higher id that an edge may touch.
 struct EdgeQuery {
   SurfaceView s;
-  Span<const Box> trust;
+  Span<const Trust> trust;
   Span<const EdgeShape> edges;
   TreeView tree;
   template <class F>
   TAPE_HD void visit(int i, F&& f) const {
     const EdgeShape a = edges[i];
-    const Box box = inflated(joined(trust[a.v[0]], trust[a.v[1]]), s.xi(s.edges[i]) + s.guard / 2);
+    const Box box = inflated(joined(trust[a.v[0]].world, trust[a.v[1]].world), s.xi(s.edges[i]) + s.guard / 2);
     tree.visit(query_box(box, i + 1, a.carrier == kFixed), [&](int j) {
       const EdgeShape& b = edges[j];
       const bool apart = a.v[0] != b.v[0] && a.v[0] != b.v[1] && a.v[1] != b.v[0] && a.v[1] != b.v[1];
@@ -163,11 +199,10 @@ struct EdgeQuery {
   }
   TAPE_HD static bool near(const EdgeShape& a, const EdgeShape& b) {
     const Vec3 offset = a.middle - b.middle, across = a.half.cross(b.half);
-    const Real range = a.reach + b.reach, range2 = range * range, height = offset.dot(across);
+    const Real range = a.object == b.object ? a.inner_reach + b.inner_reach : a.reach + b.reach, range2 = range * range,
+               height = offset.dot(across);
     if (height * height > range2 * across.squaredNorm()) return false;  // far apart along the common normal
-    if (beside(a.half, b.half, offset, range2)) return false;
-    const Vec3 x[4] = {offset - a.half, offset + a.half, -b.half, b.half};
-    return combine(closest_edge_edge(x).weight, x).squaredNorm() <= range2;
+    return !beside(a.half, b.half, offset, range2) && !beside(b.half, a.half, offset, range2);
   }
   /// Whether the part w of the offset across edge a separates the edges by more than the range: the projection of a on w is a
   /// point, that of b has the half-length |w . b| / |w|.

@@ -42,8 +42,9 @@ class ContactSearch {
 
   detail::SurfaceBuffers surface_;
   ObjectGroups groups_;
-  Buffer<Box> trust_;          ///< [nv]
-  Buffer<detail::Ball> ball_;  ///< [nv]
+  Buffer<detail::Trust> trust_;  ///< [nv]
+  Buffer<detail::Ball> ball_;    ///< [nv]
+  Buffer<Vec3> leader_start_;    ///< [objects] m
   Buffer<Lanes> triangle_boxes_, edge_boxes_;
   Buffer<detail::EdgeShape> edges_;
   Buffer<detail::TriangleShape> triangles_;

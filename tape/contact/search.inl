@@ -8,7 +8,8 @@ inline ContactSearch::ContactSearch(const SurfaceMesh& mesh, Real dhat, Real gua
 }
 
 inline bool ContactSearch::update(const PathView& paths, Real margin) {
-  if (built_ && reduce(surface_.vertices.size(), true, detail::InTrust{paths, trust_.span()}, detail::And{})) {
+  if (built_ &&
+      reduce(surface_.vertices.size(), true, detail::InTrust{surface_.view(), paths, trust_.span(), leader_start_.span()}, detail::And{})) {
     ++report_.reuses;
     return false;
   }
@@ -21,7 +22,9 @@ inline void ContactSearch::rebuild(const PathView& paths, Real margin) {
   trust_.resize(s.vertices.size), ball_.resize(s.vertices.size);
   triangle_boxes_.resize(s.triangles.size), triangles_.resize(s.triangles.size);
   edge_boxes_.resize(s.edges.size), edges_.resize(s.edges.size);
-  parallel_for(s.vertices.size, detail::MakeTrust{paths, margin, trust_.span(), ball_.span()});
+  parallel_for(s.vertices.size, detail::MakeTrust{s, paths, margin, trust_.span(), ball_.span()});
+  leader_start_.resize(s.leader.size);
+  parallel_for(s.leader.size, detail::StoreLeaders{s, paths, leader_start_.span()});
   parallel_for(s.triangles.size, detail::MakeTriangles{s, trust_.span(), ball_.span(), triangle_boxes_.span(), triangles_.span()});
   parallel_for(s.edges.size, detail::MakeEdges{s, trust_.span(), ball_.span(), edge_boxes_.span(), edges_.span()});
   triangle_tree_.build(triangle_boxes_.span());

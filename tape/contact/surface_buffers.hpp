@@ -6,13 +6,20 @@
 #include "tape/contact/kernels.inl"
 
 namespace tape::TAPE_SIDE::detail {
-/// Which body carries each whole primitive; kFixed or kFree if none does. On the host.
+/// Which body carries each whole primitive; kFixed or kFree if none does. Objects of free vertices alone have a leader. On the host.
 struct Carriers {
-  std::vector<int> vertex, edge, triangle;
+  static constexpr int kNotSeen = -2;
+  std::vector<int> vertex, edge, triangle, leader;
   explicit Carriers(const SurfaceMesh& mesh) {
     for (const VertexOwner& o : mesh.owner) vertex.push_back(o.block < 0 ? kFixed : o.body < 0 ? kFree : o.body);
     for (const SurfaceEdge& e : mesh.edges) edge.push_back(common(e.v));
     for (const SurfaceTriangle& t : mesh.triangles) triangle.push_back(common(t.v));
+    leader.assign(mesh.objects.size(), kNotSeen);
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+      int& l = leader[static_cast<std::size_t>(mesh.vertices[v].object)];
+      if (vertex[v] != kFree) l = -1;
+      if (l == kNotSeen) l = static_cast<int>(v);
+    }
   }
   int common(std::span<const int> v) const {
     const int c = vertex[static_cast<std::size_t>(v[0])];
@@ -26,6 +33,7 @@ struct SurfaceBuffers {
       : vertices(mesh.vertices), edges(mesh.edges), triangles(mesh.triangles), materials(mesh.materials), dhat(dhat_), guard(guard_) {
     const Carriers carriers(mesh);
     vertex_carrier.upload(carriers.vertex), edge_carrier.upload(carriers.edge), triangle_carrier.upload(carriers.triangle);
+    leader.upload(carriers.leader);
   }
   SurfaceView view() const {
     return {vertices.span(),
@@ -34,6 +42,7 @@ struct SurfaceBuffers {
             vertex_carrier.span(),
             edge_carrier.span(),
             triangle_carrier.span(),
+            leader.span(),
             materials,
             dhat,
             guard};
@@ -41,7 +50,7 @@ struct SurfaceBuffers {
   Buffer<SurfaceVertex> vertices;
   Buffer<SurfaceEdge> edges;
   Buffer<SurfaceTriangle> triangles;
-  Buffer<int> vertex_carrier, edge_carrier, triangle_carrier;
+  Buffer<int> vertex_carrier, edge_carrier, triangle_carrier, leader;
   int materials;
   Real dhat, guard;
 };

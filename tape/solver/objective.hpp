@@ -62,7 +62,7 @@ struct SlotGroupBuffers {
 class Objective {
  public:
   /// @param on  by effect, in the order of the list
-  Objective(const Setup& setup, const Assembly& assembly, const std::vector<bool>& on, const StateView& start);
+  Objective(const Scene& scene, const EffectParams& effects, const Assembly& assembly, const std::vector<bool>& on, const StateView& start);
   /// Pairs of the contact search, for effects that work on them.
   void set_candidates(Span<const ContactPair> candidates);
   /// Fixes what lags for a step, at s.x == s.x_start.

@@ -144,14 +144,15 @@ struct FillSlots {
 };
 }  // namespace objective
 
-inline Objective::Objective(const Setup& setup, const Assembly& assembly, const std::vector<bool>& on, const StateView& start)
+inline Objective::Objective(const Scene& scene, const EffectParams& effects, const Assembly& assembly, const std::vector<bool>& on,
+                            const StateView& start)
     : blocks_(assembly.blocks) {
   std::size_t k = 0;
   const auto build = [&]<class T>(Term<T>& term) {
     term.on = on[k++];
     if (!term.on) return;
     std::vector<typename T::Element> elements;
-    term.view = T::build(setup.scene, assembly, params<T>(setup.effects), elements);
+    term.view = T::build(scene, assembly, params<T>(effects), elements);
     term.elements.upload(elements);
     term.view.elements = term.elements.span();
     term.count = term.elements.size();

@@ -91,7 +91,7 @@ class SideStepper final : public Stepper {
     begin(state, world.setup.scene.time.dt);
     std::vector<bool> on;
     for (const PlanLine& line : world.plan) on.push_back(line.on);
-    objective_.emplace(world.setup, world.assembly, on, view(now_));
+    objective_.emplace(world.setup.scene, world.setup.effects, world.assembly, on, view(now_));
     direction_.resize(coordinates_.blocks());
     right_.resize(coordinates_.blocks());
   }
@@ -219,6 +219,10 @@ class SideStepper final : public Stepper {
     parallel_for(direction_.size(), stepping::Fill{direction_.span()});
     update_candidates(direction_.span());
     objective_->begin_step(view(now_));
+    {
+      const Stopwatch watch(line_search_ms_);
+      energy_ = objective_->energy(view(now_));
+    }
     Real previous = 0;
     overshot_ = false;
     for (int k = 0; k < params.max_newton; ++k) {
@@ -289,15 +293,15 @@ class SideStepper final : public Stepper {
       }
     }
     const Stopwatch watch(line_search_ms_);
-    const EnergySum before = objective_->energy(view(now_));
-    const Real round_off = 4e-15 * before.scale;
+    const Real round_off = 4e-15 * energy_.scale;
     at_round_off = -slope <= round_off;
     Real step = 1;
     for (int h = 0; h <= world_.setup.newton.max_line_search; ++h, step /= 2) {
       coordinates_.move(now_, direction_.span(), step, trial_);
       const EnergySum after = objective_->energy(view(trial_));
-      if (after.sum < before.sum || (-slope * step <= round_off && after.sum <= before.sum + round_off)) {
+      if (after.sum < energy_.sum || (-slope * step <= round_off && after.sum <= energy_.sum + round_off)) {
         std::swap(now_, trial_);
+        energy_ = after;
         return true;
       }
       ++report.halvings;
@@ -362,6 +366,7 @@ class SideStepper final : public Stepper {
   Buffer<Pose> body_target_;
   Buffer<Real> grip_stiffness_, mu_;
   static constexpr Real kPositionRoundOff = 1e-15;
+  EnergySum energy_;                            // at now_
   Real dt_ = 0, moving_mass_ = 0, extent_ = 0;  // extent_: largest coordinate [m]
   bool contact_on_ = false, overshot_ = false;
   Real search_ms_ = 0, assembly_ms_ = 0, linear_ms_ = 0, ccd_ms_ = 0, line_search_ms_ = 0;

@@ -2,13 +2,10 @@
 
 #include <optional>
 
-#include "tape/step/world.hpp"
-// objective.inl wants it first
 #include "tape/contact/gap.hpp"
 #include "tape/contact/intersection.hpp"
 #include "tape/contact/search.hpp"
 #include "tape/solver/objective.inl"
-#include "tape/step/world.hpp"
 #include "tests/tape/contact/meshes.hpp"
 using namespace tape;
 using namespace tape::on_cpu;
@@ -23,7 +20,7 @@ constexpr Real kMargin = 3e-5;                // [m] slack of the trust boxes
 /// The barrier with its sums: 3-vectors by vertex, 3x3 blocks by pair of vertices.
 class Barriers {
  public:
-  Barriers(Span<const ContactPair> candidates, const StateView& s) : term_{candidates, {1e4, kDhat}} {
+  Barriers(Span<const ContactPair> candidates, const StateView& s) : term_{candidates, 1e4} {
     std::vector<int> active;
     std::vector<std::uint64_t> rows, keys;
     for (int i = 0; i < candidates.size; ++i) {
@@ -94,16 +91,16 @@ struct Scene {
     direction.upload(d);
     search.rebuild(paths(), kMargin);
     barriers.emplace(search.candidates(), view());
-    Setup setup;
-    setup.scene.contact.dhat = kDhat;
+    tape::Scene empty;
+    empty.contact.dhat = kDhat;
     Assembly assembly;
     assembly.blocks = x.size();
     std::vector<bool> on;
     for_each_effect([&]<class T>(std::type_identity<T>) { on.push_back(T::name == Barrier::name); });
-    potential.emplace(setup, assembly, on, view());
+    potential.emplace(empty, EffectParams{}, assembly, on, view());
   }
   PathView paths() const { return {x.span(), owner.span(), direction.span(), bodies.span()}; }
-  StateView view() const { return {0.01, x.span(), x.span(), x.span(), owner.span(), {}, {}, {}, {}, {}}; }
+  StateView view() const { return {0.01, false, x.span(), x.span(), x.span(), owner.span(), {}, {}, {}, {}, {}}; }
   int pairs() const { return search.candidates().size; }
 };
 Scene& scene(benchmark::State& state) {

@@ -137,7 +137,7 @@ std::vector<HardCase> stack_cases() {
   for (const int speed : {1, 2, 4, 8})
     cases.push_back({"HC10_pulled_at_" + std::to_string(speed) + "_m_s", "a strip is pulled from under a block", 0.06 + 0.08 / speed, true,
                      [speed] { return pulled_out(speed); }});
-  for (const auto& [name, dt, duration] : {std::tuple{"1e-3", 1e-3, 0.15}, {"1e-2", 1e-2, 1.0}, {"1e-1", 1e-1, 3.0}})
+  for (const auto& [name, dt, duration] : {std::tuple{"1e-4", 1e-4, 0.5}, {"1e-3", 1e-3, 0.5}, {"1e-2", 1e-2, 1.0}, {"1e-1", 1e-1, 3.0}})
     cases.push_back({std::string("HC12_dt_") + name, "drop and rest", duration, false, [dt = dt] { return dropped_at(dt); }, lies_flat});
   return cases;
 }

@@ -99,6 +99,23 @@ TEST(Ccd, AfterAPublishedStepTheSameStepIsFree) {
   }
 }
 
+TEST(Ccd, TrianglesOfManyMetresDoNotStopAStepThatLeavesTheGap) {
+  // The gap of 90 um goes to 80 um, and eta 0.2 asks for 18: the whole step is free, wherever on a sliver of 10 cm height it is.
+  for (const Real length : {2.0, 66.0, 500.0}) {
+    const Vec3 a(-length / 2, -0.05, 0), b(length / 2, -0.05, 0), c(length / 2, 0.05, 0), down(0, 0, -1e-5);
+    for (int k = 0; k < 100; ++k) {
+      const Vec3 p(length * (0.3 + 0.0015 * k), -0.0095 + 0.003 * (k % 7), 9e-5);
+      const Vec3 along(0.0031667, 0, 0), across(0.0031667, 0.0031667, 0);
+      const Vec3 face[4] = {p, a, b, c}, face_to[4] = {p + down, a, b, c};
+      EXPECT_EQ(toi(kVT, straight(face, face_to)), 1) << length << " " << k;
+      for (const Vec3& e : {along, across}) {
+        const Vec3 edges[4] = {p, p + e, a, c}, edges_to[4] = {p + down, p + e + down, a, c};
+        EXPECT_EQ(toi(kEE, straight(edges, edges_to)), 1) << length << " " << k;
+      }
+    }
+  }
+}
+
 TEST(Ccd, PointPlaneClosingTimesAreSafeOverSixteenDecades) {  // the list of checks.md part 1
   for (const Real exact : {1e-16, 1e-8, 1e-6, 1e-4, 0.1, 0.5, 0.8, 0.88, 0.9, 1.0}) {
     const Vec3 from[4] = {{0, 1, 0}, {-1, 0, 1}, {1, 0, 1}, {0, 0, -1}};
