@@ -19,7 +19,7 @@ struct BendingParams {
 /// Bending of the film, flat at rest. Per triangle, over the angles theta [3] rad at its edges,
 ///   E = 1/2 theta^T K theta,
 /// where K [3x3] J depends on the law and the flat mesh alone (README.md): `hinge` is diagonal, `shape_operator` the plate energy
-/// A D/2 [(1 - nu) |S|^2 + nu tr^2 S] of the curvature S that the three angles stand for.
+/// A D/2 |S|^2 of the curvature S that the three angles stand for.
 struct Bending {
   static constexpr std::string_view name = "bending";
   static constexpr bool free_vertices = true;
