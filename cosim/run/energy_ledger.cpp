@@ -8,9 +8,6 @@
 
 namespace cosim {
 namespace {
-/// Friction's potential is a device of the time step, not a store of energy.
-bool conservative(const EffectReport& effect) { return effect.name != "friction"; }
-
 /// Energy [J] of the springs of all grips at the vertices x [nv].
 Real grip_energy(const World& world, const std::vector<Vec3>& x, const Drive& drive) {
   Real sum = 0;
@@ -50,7 +47,7 @@ Real EnergyLedger::body_work(const State& state) const {
 
 EnergyLedger::Entry EnergyLedger::after(const State& state, const StepReport& report) {
   std::vector<Real> energies;
-  for (const EffectReport& effect : report.effects) energies.push_back(conservative(effect) ? effect.energy : 0);
+  for (const EffectReport& effect : report.effects) energies.push_back(effect.energy);
   const bool first = !std::exchange(started_, true);
   if (first) {
     first_energies_ = energies;

@@ -35,7 +35,7 @@ int planned_steps(const Scene& scene) { return static_cast<int>(std::lround(scen
 RunLog simulate(const World& world, Stepper& stepper, State& state, const RunOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   const int planned = planned_steps(world.setup.scene);
-  const int last = options.max_steps < 0 ? planned : std::min(planned, state.step + options.max_steps);
+  const int last = options.max_steps < 0 || options.max_steps > planned - state.step ? planned : state.step + options.max_steps;
   RunLog log{.start = state};
   EnergyLedger ledger(world);
   RecordClock clock(options.record.rate, state.time);

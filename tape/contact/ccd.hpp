@@ -82,7 +82,7 @@ TAPE_HD inline bool at_rest(const Motion& m) {
 }  // namespace detail
 
 /// Largest step t for which the gap d - xi of a pair stays above eta times its start over all of [0, t].
-/// Conservative advancement with a separating direction: with n = p / d between the closest points at t, every later distance is
+/// Conservative advancement with a separating direction: with n the direction between the closest points at t, every later distance is
 /// at least min over vertex pairs of n . (x_i - x_j), and along true paths each of these falls no faster than
 ///   a + b s - c s^2 / 2,   b = n . (x_i' - x_j'),   c = |spin_i|^2 r_i + |spin_j|^2 r_j   (r: distance from the axis).
 /// The bound holds for any unit vector n, so an inexact closest point costs iterations, never a missed contact; for straight motion

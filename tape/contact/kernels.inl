@@ -159,7 +159,7 @@ struct VertexQuery {
     tree.visit(query_box(inflated(trust[v].world, beyond), 0, carrier == kFixed), [&](int t) {
       const TriangleShape& b = triangles[t];
       const bool apart = v != b.v[0] && v != b.v[1] && v != b.v[2] && (carrier == kFree || carrier != b.carrier);
-      if (apart && near(centre, b, object == b.object ? inner_reach + b.inner_reach : reach + b.reach)) f(t);
+      if (apart && near(centre, b, object == b.object ? std::min(inner_reach + b.inner_reach, reach + b.reach) : reach + b.reach)) f(t);
     });
   }
   TAPE_HD static bool near(const Vec3& centre, const TriangleShape& b, Real range) {
@@ -199,8 +199,8 @@ struct EdgeQuery {
   }
   TAPE_HD static bool near(const EdgeShape& a, const EdgeShape& b) {
     const Vec3 offset = a.middle - b.middle, across = a.half.cross(b.half);
-    const Real range = a.object == b.object ? a.inner_reach + b.inner_reach : a.reach + b.reach, range2 = range * range,
-               height = offset.dot(across);
+    const Real range = a.object == b.object ? std::min(a.inner_reach + b.inner_reach, a.reach + b.reach) : a.reach + b.reach,
+               range2 = range * range, height = offset.dot(across);
     if (height * height > range2 * across.squaredNorm()) return false;  // far apart along the common normal
     return !beside(a.half, b.half, offset, range2) && !beside(b.half, a.half, offset, range2);
   }

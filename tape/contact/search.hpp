@@ -15,8 +15,9 @@ struct SearchReport {
 };
 
 /// Candidate pairs of a surface, valid while every vertex stays in its trust box, and the step limits that follow from them.
-/// The candidates hold every admissible pair that can come within dhat of touching there; their order (vertex-triangle, then
-/// edge-edge, each sorted by the primitives' ids) depends on nothing but the pairs themselves. README.md has the reasoning.
+/// The candidates hold every admissible pair that can come within dhat (edge-edge: the guard's reach) of touching there; their order
+/// (vertex-triangle, then edge-edge, each sorted by the primitives' ids) depends on nothing but the pairs themselves. README.md has the
+/// reasoning.
 class ContactSearch {
  public:
   /// @param dhat   [m] activation distance beyond xi
@@ -28,6 +29,8 @@ class ContactSearch {
   bool update(const PathView& paths, Real margin);
   /// Finds the candidates anew, whatever is known.
   void rebuild(const PathView& paths, Real margin);
+  /// Makes the next update a rebuild.
+  void forget() { built_ = false; }
   Span<const ContactPair> candidates() const { return pairs_.span(); }
   const SearchReport& report() const { return report_; }
 

@@ -43,7 +43,9 @@ void SurfaceMesh::add_object(const std::string& name, const std::vector<Vec3>& r
     total += area;
     for (int k = 0; k < 3; ++k) {
       vertex(v[k]).area += area / 3;
-      ++at_vertex[static_cast<std::size_t>(t[k])];
+      std::uint16_t& around = at_vertex[static_cast<std::size_t>(t[k])];
+      TAPE_CHECK(around < 65535);
+      ++around;
       Edge& edge = edge_of[ends_of(triangle, k)];
       edge.area += area / 3;
       ++edge.triangles;

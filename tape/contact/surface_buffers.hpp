@@ -8,18 +8,15 @@
 namespace tape::TAPE_SIDE::detail {
 /// Which body carries each whole primitive; kFixed or kFree if none does. Objects of free vertices alone have a leader. On the host.
 struct Carriers {
-  static constexpr int kNotSeen = -2;
   std::vector<int> vertex, edge, triangle, leader;
   explicit Carriers(const SurfaceMesh& mesh) {
     for (const VertexOwner& o : mesh.owner) vertex.push_back(o.block < 0 ? kFixed : o.body < 0 ? kFree : o.body);
     for (const SurfaceEdge& e : mesh.edges) edge.push_back(common(e.v));
     for (const SurfaceTriangle& t : mesh.triangles) triangle.push_back(common(t.v));
-    leader.assign(mesh.objects.size(), kNotSeen);
-    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-      int& l = leader[static_cast<std::size_t>(mesh.vertices[v].object)];
-      if (vertex[v] != kFree) l = -1;
-      if (l == kNotSeen) l = static_cast<int>(v);
-    }
+    leader.assign(mesh.objects.size(), -1);
+    for (std::size_t v = mesh.vertices.size(); v-- > 0;) leader[static_cast<std::size_t>(mesh.vertices[v].object)] = static_cast<int>(v);
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+      if (vertex[v] != kFree) leader[static_cast<std::size_t>(mesh.vertices[v].object)] = -1;
   }
   int common(std::span<const int> v) const {
     const int c = vertex[static_cast<std::size_t>(v[0])];

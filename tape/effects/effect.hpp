@@ -20,7 +20,7 @@ namespace tape {
 ///   bool lag(pair, s, Element& out)            elements are made at the start of each step, from the contact pairs for which this
 ///                                              returns true (s.x is s.x_start then)
 ///   static constexpr bool free_vertices = true the stencil names strip vertices only: nothing to relocate
-///   static constexpr bool incremental = true   its energy belongs to the step and is not stored: inertia
+///   static constexpr bool incremental = true   its energy belongs to the step and is not stored: inertia, friction
 ///   static constexpr bool contact_pairs = true elements are the candidates of the contact search
 ///   bool active(s, i)                          false: element i contributes nothing here, gradient and Hessian skip it
 template <class T>

@@ -9,6 +9,7 @@ namespace tape {
 /// pairs carry the force.
 struct Friction {
   static constexpr std::string_view name = "friction";
+  static constexpr bool incremental = true;
   struct Params {
     Real eps_v = 1e-4;
     template <class F>

@@ -121,7 +121,7 @@ struct Grip {
   std::string name;
   GripTarget what;
   std::string to;      ///< body that the grip ties to; empty: a target moved by the script
-  Real stiffness = 0;  ///< [N/m] of the whole grip; 0: chosen from the masses that it holds
+  Real stiffness = 0;  ///< [N/m] of the whole grip; 0: chosen from the masses and strips of the scene
   Real start = 0;      ///< [s]
   Real end = 1e300;    ///< [s] released here
   struct Key {

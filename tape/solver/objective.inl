@@ -250,7 +250,7 @@ inline void Objective::set_pattern(const StateView& s, bool contact) {
                                                     group.rows.span(),
                                                     group.keys.span()});
   });
-  group.gather.set_rows(blocks_, group.rows);
+  if (!contact || group.rows.size() > 0) group.gather.set_rows(blocks_, group.rows);
 }
 
 inline void Objective::fill(const StateView& s, HessianMode mode, bool contact) {
@@ -269,7 +269,7 @@ inline void Objective::fill(const StateView& s, HessianMode mode, bool contact) 
                                                      group.gradient.span(),
                                                      group.hessian.span()});
   });
-  group.gather.gather(group.gradient.span(), contact, gradient_.span());
+  if (!contact || group.rows.size() > 0) group.gather.gather(group.gradient.span(), contact, gradient_.span());
 }
 
 inline void Objective::linearize(const StateView& s, HessianMode mode) {

@@ -25,7 +25,7 @@ class StripFactor {
   struct Band {
     int first_block, blocks;
     int width;                // blocks that a row reaches beyond its diagonal
-    std::vector<Real> lower;  // [3 blocks][kd + 4] LAPACK band storage of the lower triangle, kd = 3 width + 2
+    std::vector<Real> lower;  // [3 blocks][kd + kPanel] LAPACK band storage of the lower triangle, kd = 3 width + 2
     int unknowns() const { return 3 * blocks; }
     int kd() const { return 3 * width + 2; }
   };

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "tape/contact/intersection.hpp"
 #include "tape/step/world.hpp"
 
 namespace tape {
@@ -142,6 +143,11 @@ State load_snapshot(const std::string& file, const World& world) {
     if (as_text(read_array<char>(h5, kHash, H5T_NATIVE_CHAR)) != state.hash()) refuse("its contents do not match their hash");
   } catch (const std::out_of_range&) {
     refuse("its arrays are too short");
+  }
+  try {
+    check_start(vertex_positions(world, state), world.surface, world.setup.scene.dhat());
+  } catch (const InputError& e) {
+    refuse(e.what());
   }
   return state;
 }

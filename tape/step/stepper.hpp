@@ -16,7 +16,7 @@ constexpr auto enum_names(Backend) { return std::array<std::string_view, 3>{"aut
 struct EffectReport {
   std::string name;
   Real ms = 0;
-  Real energy = 0;   ///< [J] at the end of the step; inertia: 0
+  Real energy = 0;   ///< [J] stored at the end of the step; inertia and friction: 0
   int elements = 0;  ///< that contributed at the end of the step
 };
 /// Time of a stage of the solver in a step.
@@ -39,7 +39,8 @@ struct StepReport {
   std::string linear_solver;
   Real last_update = 0;                                  ///< [m] largest move of a vertex in the last Newton update, before any limit
   Real stop_error_estimate = 0;                          ///< [m] what the stop may have left on the table
-  Real min_gap = std::numeric_limits<Real>::infinity();  ///< [m] smallest d - xi among candidate pairs at the end; infinite without any
+  Real min_gap = std::numeric_limits<Real>::infinity();  ///< [m] smallest d - xi among candidate pairs at the end (edges: those in the
+                                                         ///< guard's reach); infinite without any
   int candidates = 0, active_pairs = 0, searches = 0;
   int ccd_capped = 0;                    ///< CCD queries that ended at their iteration limit (the step was shorter, still safe)
   Real kinetic = 0;                      ///< [J] at the end of the step

@@ -217,12 +217,14 @@ class SideStepper final : public Stepper {
   bool newton(StepReport& report) {
     const NewtonParams& params = world_.setup.newton;
     parallel_for(direction_.size(), stepping::Fill{direction_.span()});
+    search_.forget();  // what earlier steps found must not change the order of this one's sums
     update_candidates(direction_.span());
     objective_->begin_step(view(now_));
     {
       const Stopwatch watch(line_search_ms_);
       energy_ = objective_->energy(view(now_));
     }
+    if (!std::isfinite(energy_.sum)) return fail(report, "not finite at the start: " + objective_->first_non_finite(view(now_)));
     Real previous = 0;
     overshot_ = false;
     for (int k = 0; k < params.max_newton; ++k) {
@@ -232,11 +234,12 @@ class SideStepper final : public Stepper {
       const Real moved = reduce(now_.x.size(), 0.0, stepping::Travel{coordinates_.paths(now_, direction_.span())}, stepping::Larger{});
       if (!std::isfinite(moved) || !std::isfinite(slope)) return fail(report, "the Newton direction is not finite");
       if (moved <= kPositionRoundOff * extent_) return true;  // no update is left that positions could hold
-      const Real rho = k > 0 && previous > 0 ? std::fmin(moved / previous, 0.99) : 0;
+      const Real rho = previous > 0 ? std::fmin(moved / previous, 0.99) : 0;
       report.last_update = moved;
-      report.stop_error_estimate = k > 0 ? moved * rho / (1 - rho) : moved;
-      const bool converged = stops(moved, slope, rho);
-      previous = moved;
+      report.stop_error_estimate = previous > 0 ? moved * rho / (1 - rho) : moved;
+      // An update that friction's secant shortened says nothing of what is left.
+      const bool converged = !overshot_ && stops(moved, slope, rho);
+      previous = overshot_ ? 0 : moved;
       bool at_round_off = false;
       const int halvings = report.halvings;
       if (!line_search(slope, report, at_round_off)) return false;
@@ -249,17 +252,17 @@ class SideStepper final : public Stepper {
   bool stops(Real moved, Real slope, Real rho) const {
     const NewtonParams& params = world_.setup.newton;
     if (params.stop == StopRule::velocity) return moved < params.velocity_tol * dt_;
-    const Real lost = params.hessian == HessianMode::projected ? (1 - rho) * (1 - rho) : 1;
+    const Real lost = mode_ == HessianMode::projected ? (1 - rho) * (1 - rho) : 1;
     return -slope / lost <= moving_mass_ * params.velocity_tol * params.velocity_tol;
   }
 
   /// direction_ = -H^-1 g, right_ = -g.
   bool find_direction(StepReport& report) {
-    HessianMode mode = world_.setup.newton.hessian;
+    mode_ = world_.setup.newton.hessian;
     for (;;) {
       {
         const Stopwatch watch(assembly_ms_);
-        objective_->linearize(view(now_), mode);
+        objective_->linearize(view(now_), mode_);
         parallel_for(right_.size(), stepping::Negate{objective_->gradient(), right_.span()});
       }
       const Stopwatch watch(linear_ms_);
@@ -270,11 +273,11 @@ class SideStepper final : public Stepper {
         report.linear_failures += solved.converged ? 0 : 1;
         return true;
       }
-      if (mode == HessianMode::projected) {
+      if (mode_ == HessianMode::projected) {
         const std::string where = objective_->first_non_finite(view(now_));
         return fail(report, where.empty() ? "the projected Hessian is not positive definite" : "not finite: " + where);
       }
-      mode = HessianMode::projected;
+      mode_ = HessianMode::projected;
       ++report.hessian_fallbacks;
     }
   }
@@ -366,6 +369,7 @@ class SideStepper final : public Stepper {
   Buffer<Pose> body_target_;
   Buffer<Real> grip_stiffness_, mu_;
   static constexpr Real kPositionRoundOff = 1e-15;
+  HessianMode mode_ = HessianMode::exact;       // of the last direction
   EnergySum energy_;                            // at now_
   Real dt_ = 0, moving_mass_ = 0, extent_ = 0;  // extent_: largest coordinate [m]
   bool contact_on_ = false, overshot_ = false;

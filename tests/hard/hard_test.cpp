@@ -12,7 +12,7 @@ using test::HardCase;
 using test::Simulation;
 
 namespace {
-/// Runs a case to its end with all checks on. `hash` receives the state half way, for the rerun.
+/// Runs a case until a time [s], with or without the check for intersections; what it breaks is added to `broken`.
 Simulation run(const HardCase& hard, Real until, bool check, std::vector<std::string>& broken) {
   Simulation simulation(hard.setup());
   simulation.check_intersections = check;

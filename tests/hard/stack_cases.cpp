@@ -68,7 +68,7 @@ Setup pulled_out(Real speed) {
 Setup dropped_at(Real dt) {
   Setup setup = dropped_strip(0.03, 3, 0.002);
   setup.scene.time.dt = dt;
-  setup.newton.velocity_tol = 1e-4;
+  setup.newton.velocity_tol = 1e-8 / dt;  // 10 nm left by the stop are 3e-7 of the scale of energy, m g 30 mm
   add_body(setup, "floor", box_mesh(Vec3(0.06, 0.04, 0.01)), Motion::fixed, Vec3(0, 0, -0.005));
   return setup;
 }

@@ -123,14 +123,6 @@ TEST(EnergyLedger, EnergyFromNowhereIsARiseAndDissipationIsNot) {
   EXPECT_NEAR(rise_above_work(with_energy({5, 3, 4, 2})), 1.0 / 5, 1e-3);  // scale 5 J; the work is below 1e-3 J
   EXPECT_FALSE(condition(check_conditions(world, with_energy({5, 3, 4, 2})), "energy_rise").met);
 }
-TEST(EnergyLedger, FrictionIsNoStoreOfEnergy) {
-  const World world = strip_world();
-  const RunLog log = run(world, [](State& state, StepReport& report) {
-    report.kinetic = 1;
-    report.effects = {{.name = "friction", .energy = 1.0 + state.step}};
-  });
-  EXPECT_EQ(log.rows.back().energy.potential, 0);
-}
 TEST(Conditions, EachLimitThatIsNotReachedShows) {
   const World world = strip_world();
   const std::vector<std::pair<std::string, std::function<void(StepReport&)>>> broken = {

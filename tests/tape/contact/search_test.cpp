@@ -1,5 +1,6 @@
 #include "tape/contact/search.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <set>
@@ -119,6 +120,72 @@ TEST(ContactSearch, CandidatesHoldEveryPairOfRollsAndFolds) {
     search.update(scene.paths(), 5e-5);
     expect_holds_all(keys(search.candidates()), near_pairs(scene, 2 * kXi, kDhat));
   }
+}
+
+TEST(ContactSearch, AFoldThatFliesFarHasTheCandidatesOfOneThatStays) {
+  // Pairs inside an object are seen from it: 0.1 m in a step, and reuse on the way, change nothing but round-off.
+  const test::Surface fold = test::folded_strip(3, 10, 2.7e-4, kXi);
+  std::set<Key> of_resting;
+  for (const Vec3& flight : {Vec3(0, 0, 0), Vec3(0.1, -0.05, 0.02)}) {
+    Scene scene(fold);
+    scene.jiggle(1e-4, 5);
+    for (Vec3& d : scene.direction) d += flight;
+    ContactSearch search(scene.mesh(), kDhat, kDhat / 2);
+    search.update(scene.paths(), 5e-5);
+    const std::set<Key> found = keys(search.candidates());
+    std::set<Key> near = near_pairs(scene, 2 * kXi, kDhat);
+    std::erase_if(near, [](const Key& k) { return std::get<0>(k) == 1; });
+    expect_holds_all(found, near);
+    near = near_pairs(scene, 2 * kXi, kDhat / 2);  // edges: the guard
+    expect_holds_all(found, near);
+    if (flight.isZero()) {
+      of_resting = found;
+    } else {
+      EXPECT_LT(found.size(), 2 * of_resting.size()) << "without a leader it is every pair of the fold";
+    }
+    scene.move(0.5);
+    for (Vec3& d : scene.direction) d *= 0.5;
+    EXPECT_FALSE(search.update(scene.paths(), 5e-5)) << "half of the way is done, the other half was looked at";
+  }
+}
+
+TEST(SurfaceMesh, AnObjectKnowsItsRimAndWhatItsTrianglesShare) {
+  test::Surface s;  // four triangles around a vertex, and a tetrahedron
+  test::add_object(s, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}}, {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}}, 0.01);
+  test::add_object(s, {{0, 0, 5}, {3, 0, 5}, {0, 3, 5}, {0, 0, 8}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}, 0.01);
+  const auto& v = s.mesh.vertices;
+  EXPECT_FALSE(v[0].rim);
+  for (std::size_t k = 1; k < 5; ++k) EXPECT_TRUE(v[k].rim);
+  for (std::size_t k = 5; k < 9; ++k) EXPECT_FALSE(v[k].rim);
+  const SurfaceTriangle &flat = s.mesh.triangles[0], &closed = s.mesh.triangles[4];
+  EXPECT_TRUE(flat.open);
+  EXPECT_THAT(flat.sharing.edge, testing::ElementsAre(2, 1, 2));
+  EXPECT_THAT(flat.sharing.vertex, testing::ElementsAre(4, 0, 0));
+  EXPECT_DOUBLE_EQ(flat.mean_area, 0.5);
+  EXPECT_FALSE(closed.open);
+  EXPECT_THAT(closed.sharing.edge, testing::ElementsAre(2, 2, 2));
+  EXPECT_THAT(closed.sharing.vertex, testing::ElementsAre(3, 3, 3));
+  EXPECT_DOUBLE_EQ(closed.mean_area, (3 * 4.5 + 4.5 * std::sqrt(3.0)) / 4);  // three half squares and the slope
+  EXPECT_EQ(s.mesh.edges.size(), 8u + 6u);
+}
+TEST(ContactSearch, EdgesAndRimsOverOpenSurfacesReachAsFarAsTheGuard) {
+  test::Surface s;
+  const std::vector<Vec3> sheet = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
+  std::vector<Vec3> above;
+  for (const Vec3& p : sheet) above.push_back(0.5 * p + Vec3(0.01, 0.02, 0.05));
+  test::add_object(s, sheet, {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}}, 0);
+  test::add_object(s, above, {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}}, 0);
+  Scene scene(s);
+  ContactSearch search(scene.mesh(), 0.1, 0.06);
+  search.update(scene.paths(), 0);
+  int full = 0, guard = 0;
+  for (const ContactPair& p : search.candidates()) {
+    const bool inner = p.kind == PairKind::vertex_triangle && (p.v[0] == 0 || p.v[0] == 5);
+    EXPECT_EQ(p.dhat, inner ? 0.1 : 0.06);
+    ++(inner ? full : guard);
+  }
+  EXPECT_GT(full, 0);
+  EXPECT_GT(guard, 0);
 }
 
 TEST(ContactSearch, CandidatesHoldEveryPairOfATurningBody) {

@@ -161,6 +161,21 @@ TEST(Friction, DistancesGiveThePublishedNormalForces) {
   }
 }
 
+TEST(Friction, AfterAnOvershootItsParabolaLiesAboveTheEnergyAndTouchesItWhereItIs) {
+  for (const Real from : {2e-7, 5e-6, 1e-4}) {  // eps is 1e-6 m
+    const Slider at(from);
+    StateView s = at.view(0.01);
+    s.overshot = true;
+    const Real here = at.friction.energy(s, 0), slope = at.friction.gradient(s, 0)[0],
+               curvature = at.friction.hessian(s, 0, HessianMode::exact)(0, 0);
+    EXPECT_GE(test::smallest_eigenvalue(at.friction.hessian(s, 0, HessianMode::exact)), -1e-12 * curvature);
+    for (const Real to : {-2e-4, -5e-6, -1e-7, 0.0, 3e-7, 2e-6, 3e-4}) {
+      const Slider there(to);
+      const Real step = to - from, parabola = here + slope * step + curvature / 2 * step * step;
+      EXPECT_GE(parabola, there.friction.energy(there.view(0.01), 0) * (1 - 1e-12)) << from << " to " << to;
+    }
+  }
+}
 TEST(Friction, SlidingCostsMuTimesTheNormalForceWhateverTheTimeStep) {
   for (Real dt : {0.02, 0.01, 0.001}) {
     for (Real slip : {2.1e-6, 1e-4}) {  // beyond eps_v dt

@@ -43,6 +43,7 @@ TEST(Incline, ABlockHoldsAtMuEqualTanAndSlidesAtTheClosedFormRateBelow) {
   holds.run_to(0.6);
   EXPECT_TRUE(holds.broken.empty()) << holds.broken.front();
   EXPECT_LT(speed(holds), 1e-4) << "faster than eps_v";
+  for (const EffectReport& e : holds.report().effects) EXPECT_TRUE(e.name != "friction" || e.energy == 0) << "friction stores nothing";
   const Real mu = 0.98 * std::tan(kSlope), a = kGravity * (std::sin(kSlope) - mu * std::cos(kSlope));
   Simulation slides = block_on_incline(mu, 0.005);
   slides.run_to(0.2);

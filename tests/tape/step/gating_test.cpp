@@ -58,7 +58,7 @@ TEST(Gating, AStripFarFromEverythingHasNoPairsAndSpendsNoTimeOnThem) {
   setup.scene.grips.clear();
   setup.scene.bodies[0].pose.position.z() = -1;
   Simulation s(setup);
-  for (int k = 0; k < 40; ++k) {  // in the end it falls by ten cells in a step
+  for (int k = 0; k < 40; ++k) {  // in the end it falls by six cells in a step
     s.step();
     ASSERT_EQ(s.report().candidates, 0) << "step " << k;
     EXPECT_EQ(s.report().active_pairs, 0);
