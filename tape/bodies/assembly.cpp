@@ -119,8 +119,9 @@ void add_grip(Assembly& a, const Scene& scene, const Grip& grip) {
   a.grips.push_back(std::move(part));
 }
 
-/// Stiffness [N/m] of a grip that names none: the weight of all that moves shifts it by a tenth of a micrometre, and pulling on a strip
-/// stretches the strip ten thousand times as much. Stiffer, what a stop rule leaves of the positions would read as newtons.
+/// Stiffness [N/m] of a grip that names none: the weight of all that moves shifts it by ten micrometres, and pulling on a strip stretches
+/// the strip a hundred times as much. Stiffer, what a stop rule leaves of the positions would read as newtons, and a grip that moves by
+/// centimetres in a step would press what is in its way to gaps of nanometres before the rest of the scene gives way.
 Real default_stiffness(const Assembly& a, const Scene& scene) {
   Real total = 0, strip = 0;
   for (Real m : a.mass) total += m;
@@ -128,7 +129,7 @@ Real default_stiffness(const Assembly& a, const Scene& scene) {
     const Film& film = scene.films[static_cast<std::size_t>(s.film)];
     strip = std::max(strip, film.membrane_modulus * film.thickness * film.width / s.mesh.length);
   }
-  return std::max(total * 9.81 / 1e-7, 1e4 * strip);
+  return std::max(total * 9.81 / 1e-5, 1e2 * strip);
 }
 
 void choose_stiffness(Assembly& a, const Scene& scene) {

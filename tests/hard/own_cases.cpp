@@ -72,15 +72,7 @@ Setup rolled_over() {
 }
 Setup film_on_box() {
   Setup setup = dropped_strip(0.06, 6, 0.001);
-  setup.scene.films = {{.name = "packaging_48mm",
-                        .width = 0.048,
-                        .thickness = 8e-5,
-                        .density = 924,
-                        .membrane_modulus = 2.2e9,
-                        .bending_modulus = 2.2e9,
-                        .poisson = 0.42,
-                        .xi = 2e-5,
-                        .dhat = 8e-5}};
+  setup.scene.films = {packaging_film()};
   add_body(setup, "box", box_mesh(Vec3(0.03, 0.06, 0.02)), Motion::fixed, Vec3(0, 0, -0.01));
   return setup;
 }

@@ -55,6 +55,17 @@ Real Simulation::energy_scale() const {
 }
 
 Film vinyl() { return {.name = "vinyl_19mm"}; }
+Film packaging_film() {
+  return {.name = "packaging_48mm",
+          .width = 0.048,
+          .thickness = 8e-5,
+          .density = 924,
+          .membrane_modulus = 2.2e9,
+          .bending_modulus = 2.2e9,
+          .poisson = 0.42,
+          .xi = 2e-5,
+          .dhat = 8e-5};
+}
 
 Strip flat_strip(Real length, int cells, const Vec3& start) {
   Strip strip;

@@ -40,6 +40,8 @@ class Simulation {
 
 /// The 19-mm vinyl tape of the paper's Table I.
 Film vinyl();
+/// The 48-mm packaging film of facts 18.
+Film packaging_film();
 /// A strip of that film, flat, from `start` along x, `cells` over its width.
 Strip flat_strip(Real length, int cells, const Vec3& start);
 /// A scene with one such strip; dt 0.01 s, tolerance 1e-3 m/s.
