@@ -82,9 +82,10 @@ Triangles::Triangles() {
   glGenVertexArrays(1, &array_);
   glGenBuffers(1, &buffer_);
   glBindVertexArray(array_);
-  glBindBuffer(GL_ARRAY_BUFFER, buffer_);
+  glBindVertexBuffer(0, buffer_, 0, sizeof(DrawVertex));
   const auto attribute = [](GLuint location, GLint size, GLenum type, std::size_t offset) {
-    glVertexAttribPointer(location, size, type, type == GL_UNSIGNED_BYTE, sizeof(DrawVertex), static_cast<const char*>(nullptr) + offset);
+    glVertexAttribFormat(location, size, type, type == GL_UNSIGNED_BYTE, static_cast<GLuint>(offset));
+    glVertexAttribBinding(location, 0);
     glEnableVertexAttribArray(location);
   };
   attribute(0, 3, GL_FLOAT, offsetof(DrawVertex, position));
