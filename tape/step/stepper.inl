@@ -3,6 +3,7 @@
 
 #include "tape/bodies/configuration.hpp"
 #include "tape/bodies/free_flight.hpp"
+#include "tape/contact/gap.hpp"
 #include "tape/contact/search.hpp"
 #include "tape/solver/linear_solver.hpp"
 #include "tape/solver/objective.inl"
@@ -26,9 +27,6 @@ struct Plus {
 struct Larger {
   TAPE_HD Real operator()(Real a, Real b) const { return a > b ? a : b; }
 };
-struct SmallerReal {
-  TAPE_HD Real operator()(Real a, Real b) const { return a < b ? a : b; }
-};
 /// Largest component [m] of the move of a vertex over a whole path.
 struct Travel {
   PathView paths;
@@ -46,15 +44,6 @@ struct Scale {
   Span<Vec3> out;
   Real factor;
   TAPE_HD void operator()(int i) const { out[i] *= factor; }
-};
-struct Gap {
-  Span<const ContactPair> pairs;
-  Span<const Vec3> x;
-  TAPE_HD Real operator()(int i) const {
-    const ContactPair& p = pairs[i];
-    const Vec3 at[4] = {x[p.v[0]], x[p.v[1]], x[p.v[2]], x[p.v[3]]};
-    return combine(closest(p.kind, at).weight, at).norm() - p.xi;
-  }
 };
 struct Copy {
   Span<const ContactPair> from;
@@ -339,7 +328,7 @@ class SideStepper final : public Stepper {
         const Span<const ContactPair> pairs = search_.candidates();
         report.candidates = pairs.size;
         report.active_pairs = term.count;
-        report.min_gap = reduce(pairs.size, report.min_gap, stepping::Gap{pairs, s.x}, stepping::SmallerReal{});
+        report.min_gap = smallest_gap(pairs, s.x).gap;
       }
       if constexpr (requires { term.view.strain(s, 0); })
         report.max_strain = reduce(term.view.elements.size, 0.0, stepping::Strain<T>{term.view, s}, stepping::Larger{});
