@@ -141,7 +141,7 @@ TEST(ContactSearch, AFoldThatFliesFarHasTheCandidatesOfOneThatStays) {
     if (flight.isZero()) {
       of_resting = found;
     } else {
-      EXPECT_LT(found.size(), 2 * of_resting.size()) << "without a leader it is every pair of the fold";
+      EXPECT_LT(found.size(), 2 * of_resting.size()) << "seen from the world instead of the leader there are forty times as many";
     }
     scene.move(0.5);
     for (Vec3& d : scene.direction) d *= 0.5;
