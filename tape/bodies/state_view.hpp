@@ -1,6 +1,7 @@
 #pragma once
 #include "tape/bodies/path.hpp"
 #include "tape/core/types.hpp"
+#include "tape/model/adhesion.hpp"
 
 namespace tape {
 /// What an effect sees of the world at a trial configuration. All arrays are memory of the side that runs.
@@ -16,6 +17,8 @@ struct StateView {
   Span<const Vec3> grip_target;     ///< [springs] m, at the end of the step
   Span<const Real> grip_stiffness;  ///< [springs] N/m, 0 while the grip is open
   Span<const Real> mu;              ///< [materials^2] friction by ContactPair::interface
+  Span<const Adhesion> adhesion;    ///< [materials^2] by ContactPair::interface
+  Span<const Vec3> normal;          ///< [nv] mean normal of the triangles around a vertex, by area; at the end of a step only
 };
 
 /// Ids that an element touches: vertices, or blocks of unknowns for effects with `on_blocks`.

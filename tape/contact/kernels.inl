@@ -22,9 +22,20 @@ struct SurfaceView {
   TAPE_HD Real xi(const SurfaceTriangle& t) const {
     return std::max(vertices[t.v[0]].xi, std::max(vertices[t.v[1]].xi, vertices[t.v[2]].xi));
   }
-  TAPE_HD int interface(int v, int w) const {
-    const int a = vertices[v].material, b = vertices[w].material;
-    return a < b ? a * materials + b : b * materials + a;
+  TAPE_HD int interface(int v, int w) const { return vertices[v].material * materials + vertices[w].material; }
+  /// The pair of vertex v and triangle t with its constants.
+  TAPE_HD ContactPair vertex_triangle(int v, int t) const {
+    const SurfaceVertex& a = vertices[v];
+    const SurfaceTriangle& b = triangles[t];
+    return {.v = {v, b.v[0], b.v[1], b.v[2]},
+            .kind = PairKind::vertex_triangle,
+            .interface = interface(v, b.v[0]),
+            .xi = a.xi + xi(b),
+            .dhat = a.rim && b.open ? guard : dhat,
+            .weight = std::min(a.area, b.mean_area),
+            .mollifier = 0,
+            .sharing = b.sharing,
+            .triangle = t};
   }
 };
 
@@ -167,18 +178,7 @@ struct VertexQuery {
     const Vec3 x[4] = {centre, b.x[0], b.x[1], b.x[2]};
     return combine(closest_vertex_triangle(x).weight, x).squaredNorm() <= range * range;
   }
-  TAPE_HD ContactPair pair(int v, int t) const {
-    const SurfaceVertex& a = s.vertices[v];
-    const SurfaceTriangle& b = s.triangles[t];
-    return {.v = {v, b.v[0], b.v[1], b.v[2]},
-            .kind = PairKind::vertex_triangle,
-            .interface = s.interface(v, b.v[0]),
-            .xi = a.xi + s.xi(b),
-            .dhat = a.rim && b.open ? s.guard : s.dhat,
-            .weight = std::min(a.area, b.mean_area),
-            .mollifier = 0,
-            .sharing = b.sharing};
-  }
+  TAPE_HD ContactPair pair(int v, int t) const { return s.vertex_triangle(v, t); }
 };
 
 /// Finds the edges of higher id that an edge may touch.

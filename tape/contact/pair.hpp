@@ -18,12 +18,13 @@ struct Sharing {
 struct ContactPair {
   int v[4];  ///< vertices
   PairKind kind;
-  int interface;    ///< material of the first times the number of materials plus that of the second, ordered: first <= second
-  Real xi;          ///< [m]   sum of the half-thicknesses: surfaces touch at this distance
-  Real dhat;        ///< [m]   reach of the barrier beyond xi
-  Real weight;      ///< [m^2] surface that the pair stands for
-  Real mollifier;   ///< [m^4] edge-edge: 1e-3 |ea|^2 |eb|^2 at rest; below this squared cross product the pair fades out
-  Sharing sharing;  ///< of the triangle
+  int interface;      ///< material of the first primitive times the number of materials, plus that of the second
+  Real xi;            ///< [m]   sum of the half-thicknesses: surfaces touch at this distance
+  Real dhat;          ///< [m]   reach of the barrier beyond xi
+  Real weight;        ///< [m^2] surface that the pair stands for
+  Real mollifier;     ///< [m^4] edge-edge: 1e-3 |ea|^2 |eb|^2 at rest; below this squared cross product the pair fades out
+  Sharing sharing;    ///< of the triangle
+  int triangle = -1;  ///< id of the triangle; -1: edges
 };
 
 TAPE_HD inline Closest closest(PairKind kind, const Vec3 (&x)[4]) {

@@ -32,6 +32,7 @@ class ContactSearch {
   /// Makes the next update a rebuild.
   void forget() { built_ = false; }
   Span<const ContactPair> candidates() const { return pairs_.span(); }
+  detail::SurfaceView surface() const { return surface_.view(); }
   const SearchReport& report() const { return report_; }
 
   /// Largest share of the step along `paths` for each object, in [0, 1]; equal for objects that candidates connect.

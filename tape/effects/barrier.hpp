@@ -6,8 +6,6 @@
 namespace tape {
 /// Contact barrier of vertex-triangle and edge-edge pairs:  E = sum over features of share m b(d), with the law b of the distance, the
 /// mollifier m of edge pairs (1 for vertex-triangle pairs) and the share of for_each_feature (1 for edge pairs).
-/// With closest-point weights w and unit normal n, grad d = w (x) n for all features. Its second derivative follows from
-/// D = d^2/2 minimised over the free parameters of the closest points: H_D = W^T W - Q S^-1 Q^T.
 struct Barrier {
   static constexpr std::string_view name = "barrier";
   static constexpr bool contact_pairs = true;
@@ -58,7 +56,7 @@ struct Barrier {
     VecN<12> g = VecN<12>::Zero();
     for_each_feature(pair, PairState::at(pair, s.x), [&](const PairState& p, Real share) {
       const Jet b = barrier(p, pair);
-      g += share * p.fade.value * b.slope * distance_gradient(p);
+      g += share * p.fade.value * b.slope * p.gradient();
       if (p.fade.slope != 0) g += p.fade.slope * b.value * 2 * fade_pull(p, p.cross());
     });
     return g;
@@ -79,12 +77,6 @@ struct Barrier {
   }
 
  private:
-  TAPE_HD static VecN<12> distance_gradient(const PairState& p) {
-    const Vec3 n = p.normal();
-    VecN<12> g;
-    for (int k = 0; k < 4; ++k) g.segment<3>(3 * k) = p.closest.weight[k] * n;
-    return g;
-  }
   /// J^T v with J = d(ea x eb)/dx; that of c = |ea x eb|^2 is 2 J^T (ea x eb).
   TAPE_HD static VecN<12> fade_pull(const PairState& p, const Vec3& v) {
     const Vec3 a = (p.x[3] - p.x[2]).cross(v), b = v.cross(p.x[1] - p.x[0]);
@@ -117,7 +109,7 @@ struct Barrier {
     const Real c = v.squaredNorm();
     if (!(c > 0)) return MatN<12, 12>::Zero();
     const Vec3 u = v / std::sqrt(c), ea = p.x[1] - p.x[0], eb = p.x[3] - p.x[2];
-    const VecN<12> gs = fade_pull(p, u), gd = distance_gradient(p);
+    const VecN<12> gs = fade_pull(p, u), gd = p.gradient();
     const Real scale = std::sqrt(gs.squaredNorm() / gd.squaredNorm()), m_s = 2 * std::sqrt(c) * p.fade.slope;
     Mat2 product;
     product(0, 0) = (2 * p.fade.slope + 4 * c * p.fade.curvature) * b.value * scale * scale;
@@ -131,30 +123,10 @@ struct Barrier {
     return h;
   }
 
-  /// H_D, d/dx of W^T p where the free parameters stay optimal.
-  TAPE_HD static MatN<12, 12> half_square_hessian(const PairState& p) {
-    const Closest& c = p.closest;
-    MatN<12, 2> Q = MatN<12, 2>::Zero();
-    Vec3 e[2];  // motion of the offset with each free parameter
-    for (int f = 0; f < c.free; ++f) {
-      e[f] = combine(c.slope[f], p.x);
-      for (int k = 0; k < 4; ++k) Q.block<3, 1>(3 * k, f) = c.slope[f][k] * p.offset + c.weight[k] * e[f];
-    }
-    MatN<12, 12> h;
-    for (int k = 0; k < 4; ++k)
-      for (int l = 0; l < 4; ++l) h.block<3, 3>(3 * k, 3 * l) = c.weight[k] * c.weight[l] * Mat3::Identity();
-    if (c.free == 1) h -= Q.col(0) * Q.col(0).transpose() / e[0].squaredNorm();
-    if (c.free == 2) {
-      const Real a = e[0].squaredNorm(), b = e[0].dot(e[1]), d = e[1].squaredNorm(), det = e[0].cross(e[1]).squaredNorm();
-      const VecN<12> q0 = (d * Q.col(0) - b * Q.col(1)) / det, q1 = (a * Q.col(1) - b * Q.col(0)) / det;
-      h -= q0 * Q.col(0).transpose() + q1 * Q.col(1).transpose();
-    }
-    return h;
-  }
   TAPE_HD static MatN<12, 12> exact_hessian(const PairState& p, const Jet& b) {
-    const VecN<12> gd = distance_gradient(p);
+    const VecN<12> gd = p.gradient();
     const Real m = p.fade.value;
-    MatN<12, 12> h = m * b.slope / p.d * half_square_hessian(p) + m * (b.curvature - b.slope / p.d) * gd * gd.transpose();
+    MatN<12, 12> h = m * p.hessian(b.slope, b.curvature);
     if (p.fade.slope == 0) return h;
     const Vec3 v = p.cross();
     const VecN<12> gc = 2 * fade_pull(p, v);

@@ -2,8 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tape/contact/pair.hpp"
-#include "tape/math/mollifier.hpp"
+#include "tape/effects/pair_state.hpp"
 
 namespace tape {
 /// Barrier energy of a pair at distance d:  b(d) = w dhat/4 kappa (r - 1)^2 ln(r)^2,  r = (d^2 - xi^2)/(dhat^2 + 2 dhat xi),
@@ -23,31 +22,6 @@ struct BarrierLaw {
     const Real r_d = 2 * d / band;
     return {scale * a * a * l * l, scale * slope * r_d, scale * (curvature * r_d * r_d + slope * 2 / band)};
   }
-};
-
-/// A contact pair at a configuration: its closest points, or those of one of its features, and how parallel its edges are.
-struct PairState {
-  Vec3 x[4];
-  Closest closest;
-  Vec3 offset;  ///< [m] between the closest points
-  Real d;       ///< [m]
-  Jet fade;     ///< mollifier; 1 for vertex-triangle pairs
-
-  TAPE_HD static PairState at(const ContactPair& pair, Span<const Vec3> positions) {
-    PairState p;
-    for (int k = 0; k < 4; ++k) p.x[k] = positions[pair.v[k]];
-    p.move_to(tape::closest(pair.kind, p.x));
-    p.fade = {1, 0, 0};
-    if (pair.kind == PairKind::edge_edge) p.fade = edge_edge_mollifier(p.cross().squaredNorm(), pair.mollifier);
-    return p;
-  }
-  TAPE_HD void move_to(const Closest& points) {
-    closest = points;
-    offset = combine(points.weight, x);
-    d = offset.norm();
-  }
-  TAPE_HD Vec3 cross() const { return (x[1] - x[0]).cross(x[3] - x[2]); }  ///< [m^2] of the two edges
-  TAPE_HD Vec3 normal() const { return offset / d; }
 };
 
 /// Calls f(p, share) for the features of a pair that the barrier counts, and how often. Edge-edge: the closest points, once.

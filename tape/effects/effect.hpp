@@ -22,6 +22,11 @@ namespace tape {
 ///   static constexpr bool free_vertices = true the stencil names strip vertices only: nothing to relocate
 ///   static constexpr bool incremental = true   its energy belongs to the step and is not stored: inertia, friction
 ///   static constexpr bool contact_pairs = true elements are the candidates of the contact search
+///   struct Memory                              what it remembers of a vertex-triangle pair from step to step, with vertex, triangle and
+///                                              visit(f) over all its members (Real or int):
+///     Element recall(memory, pair, s)          the element of a remembered pair, at the start of each step
+///     bool renew(s, i, Memory&)                what element i remembers at the end of the step; false: the pair is forgotten
+///     bool begin(pair, s, Memory& out)         whether a candidate that was not remembered is from now on
 ///   bool active(s, i)                          false: element i contributes nothing here, gradient and Hessian skip it
 template <class T>
 concept Effect = requires(const Scene& scene, const Assembly& assembly, typename T::Params& p, std::vector<typename T::Element>& elements,
@@ -35,6 +40,14 @@ concept Effect = requires(const Scene& scene, const Assembly& assembly, typename
   { term.energy(s, i) } -> std::same_as<Real>;                    // [J]
   term.gradient(s, i);                                            // [N]   VecN<3K>
   term.hessian(s, i, mode);                                       // [N/m] MatN<3K, 3K>
+};
+
+template <class T>
+concept Remembers = requires(const T& term, typename T::Memory& m, const ContactPair& pair, const StateView& s, int i) {
+  { term.recall(m, pair, s) } -> std::same_as<typename T::Element>;
+  { term.renew(s, i, m) } -> std::same_as<bool>;
+  { term.begin(pair, s, m) } -> std::same_as<bool>;
+  { m.vertex + m.triangle } -> std::same_as<int>;
 };
 
 /// Params of an effect that has nothing to set.

@@ -6,6 +6,7 @@
 #include "tape/effects/bending.hpp"
 #include "tape/effects/body_drive.hpp"
 #include "tape/effects/body_inertia.hpp"
+#include "tape/effects/cohesion.hpp"
 #include "tape/effects/friction.hpp"
 #include "tape/effects/gravity.hpp"
 #include "tape/effects/inertia.hpp"
@@ -15,7 +16,7 @@
 namespace tape {
 /// The one list of effects. Reading and writing scenes, checks, assembly on both back ends, timing, reports and the tests that hold
 /// for all of them follow from it.
-using Effects = std::tuple<Inertia, BodyInertia, BodyDrive, Gravity, Membrane, Bending, Barrier, Friction, Tether>;
+using Effects = std::tuple<Inertia, BodyInertia, BodyDrive, Gravity, Membrane, Bending, Barrier, Friction, Cohesion, Tether>;
 
 /// The settings of one effect, told apart by the effect even where two have none.
 template <class T>
@@ -33,6 +34,27 @@ typename T::Params& params(EffectParams& all) {
 template <class T>
 const typename T::Params& params(const EffectParams& all) {
   return std::get<ParamsOf<T>>(all).value;
+}
+
+/// What one effect remembers from step to step, sorted by its keys; nothing if it has no Memory.
+template <class T>
+struct MemoryOf {};
+template <class T>
+requires Remembers<T>
+struct MemoryOf<T> {
+  std::vector<typename T::Memory> pairs;
+};
+template <class... T>
+std::tuple<MemoryOf<T>...> memory_of(std::tuple<T...>*);
+using EffectMemory = decltype(memory_of(static_cast<Effects*>(nullptr)));
+
+/// Calls f(pairs) with the vector of what each effect remembers, in the order of the list.
+template <class F>
+void for_each_memory(EffectMemory& memory, const F& f) {
+  const auto call = [&]<class T>(MemoryOf<T>& of_effect) {
+    if constexpr (Remembers<T>) f(of_effect.pairs);
+  };
+  std::apply([&](auto&... of_effect) { (call(of_effect), ...); }, memory);
 }
 
 /// Calls f(std::type_identity<T>) for each effect, in the order of the list.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tape {
 Real Scene::dhat() const {
@@ -15,5 +16,16 @@ Real Scene::mu(int a, int b) const {
   for (const FrictionPair& f : frictions)
     if ((f.a == a && f.b == b) || (f.a == b && f.b == a)) return f.mu;
   return std::sqrt(materials[static_cast<std::size_t>(a)].mu * materials[static_cast<std::size_t>(b)].mu);
+}
+
+Adhesion Scene::adhesion(int first, int second) const {
+  for (const AdhesivePair& p : adhesives) {
+    if (p.a == first && p.b == second) return p.adhesion;
+    if (p.a != second || p.b != first) continue;
+    Adhesion turned = p.adhesion;
+    std::swap(turned.sticks[0][1], turned.sticks[1][0]);
+    return turned;
+  }
+  return {};
 }
 }  // namespace tape

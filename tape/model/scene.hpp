@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tape/core/settings.hpp"
+#include "tape/model/adhesion.hpp"
 #include "tape/model/film.hpp"
 #include "tape/model/triangle_mesh.hpp"
 
@@ -109,6 +110,10 @@ struct FrictionPair {
   int a = 0, b = 0;  ///< materials
   Real mu = 0;
 };
+struct AdhesivePair {
+  int a = 0, b = 0;   ///< materials
+  Adhesion adhesion;  ///< a is the first
+};
 
 /// Where a soft grip holds: vertices of a strip, or points fixed to a body.
 struct GripTarget {
@@ -143,9 +148,11 @@ struct Scene {
   std::vector<Body> bodies;
   std::vector<Material> materials = {{"default", 0.5}};
   std::vector<FrictionPair> frictions;
+  std::vector<AdhesivePair> adhesives;
   std::vector<Grip> grips;
 
-  Real dhat() const;            ///< [m] contact.dhat, or the smallest of the films' (1e-3 without strips)
-  Real mu(int a, int b) const;  ///< friction of two materials
+  Real dhat() const;                               ///< [m] contact.dhat, or the smallest of the films' (1e-3 without strips)
+  Real mu(int a, int b) const;                     ///< friction of two materials
+  Adhesion adhesion(int first, int second) const;  ///< of two materials
 };
 }  // namespace tape

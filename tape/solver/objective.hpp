@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "tape/bodies/relocation.hpp"
+#include "tape/contact/kernels.inl"
 #include "tape/core/side.hpp"
 #include "tape/core/stopwatch.hpp"
 #include "tape/effects/effects.hpp"
@@ -20,7 +21,8 @@ template <class T>
 inline constexpr bool is_contact = requires(const T& t, const ContactPair& p, const StateView& s, typename T::Element& e) {
   t.lag(p, s, e);
 }
-|| requires { T::contact_pairs; };
+|| requires { T::contact_pairs; }
+|| Remembers<T>;
 template <class T>
 inline constexpr bool free_vertices = requires {
   T::free_vertices;
@@ -37,9 +39,17 @@ struct SlotOffsets {
   Buffer<int> gradient, hessian;  // [count + 1]
 };
 
+/// Memory of an effect on this side.
+template <class T>
+struct TermMemory {};
+template <Remembers T>
+struct TermMemory<T> {
+  Buffer<typename T::Memory> memory;
+};
+
 /// One effect as the solver holds it.
 template <class T>
-struct Term {
+struct Term : TermMemory<T> {
   bool on = false;
   T view;
   Buffer<typename T::Element> elements;
@@ -67,6 +77,10 @@ class Objective {
   void set_candidates(Span<const ContactPair> candidates);
   /// Fixes what lags for a step, at s.x == s.x_start.
   void begin_step(const StateView& s);
+  /// Makes the elements of what is remembered, at s.x == s.x_start.
+  void recall(const EffectMemory& memory, const StateView& s, const detail::SurfaceView& surface);
+  /// What is remembered of a step that ended at s.
+  EffectMemory remember(const StateView& s);
   EnergySum energy(const StateView& s);
   /// Gradient and matrix at s.
   void linearize(const StateView& s, HessianMode mode);

@@ -2,6 +2,7 @@
 
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <memory>
 
 #include "tape/contact/intersection.hpp"
@@ -51,6 +52,12 @@ void visit_state(State& s, const Visit& visit) {
   for (Vec3& p : s.grip_base) visit(p);
   visit(s.step);
   for (int& c : s.grip_closed) visit(c);
+  for_each_memory(s.memory, [&](auto& pairs) {
+    int count = static_cast<int>(pairs.size());
+    visit(count);
+    pairs.resize(static_cast<std::size_t>(count));
+    for (auto& pair : pairs) pair.visit(visit);
+  });
 }
 
 struct Write {
@@ -66,7 +73,11 @@ struct Read {
   const Flat& flat;
   mutable std::size_t real = 0, integer = 0;
   void operator()(Real& v) const { v = flat.reals.at(real++); }
-  void operator()(int& v) const { v = static_cast<int>(flat.integers.at(integer++)); }
+  void operator()(int& v) const {
+    const std::int64_t value = flat.integers.at(integer++);
+    if (value < 0 || value > std::numeric_limits<int>::max()) throw std::out_of_range("integer");
+    v = static_cast<int>(value);
+  }
   template <class M>
   void operator()(M& m) const {
     for (Eigen::Index i = 0; i < m.size(); ++i) m.data()[i] = flat.reals.at(real++);
@@ -142,7 +153,7 @@ State load_snapshot(const std::string& file, const World& world) {
     visit_state(state, Read{flat});
     if (as_text(read_array<char>(h5, kHash, H5T_NATIVE_CHAR)) != state.hash()) refuse("its contents do not match their hash");
   } catch (const std::out_of_range&) {
-    refuse("its arrays are too short");
+    refuse("its arrays do not fit");
   }
   try {
     check_start(vertex_positions(world, state), world.surface, world.setup.scene.dhat());

@@ -4,9 +4,11 @@
 #include "tape/bodies/configuration.hpp"
 #include "tape/bodies/free_flight.hpp"
 #include "tape/contact/gap.hpp"
+#include "tape/contact/normals.hpp"
 #include "tape/contact/search.hpp"
 #include "tape/solver/linear_solver.hpp"
 #include "tape/solver/objective.inl"
+#include "tape/solver/remember.inl"
 #include "tape/step/finish.hpp"
 #include "tape/step/stepper.hpp"
 
@@ -69,12 +71,19 @@ class SideStepper final : public Stepper {
       : world_(world),
         coordinates_(world.assembly),
         search_(world.surface, world.setup.scene.dhat(), world.setup.scene.contact.guard * world.setup.scene.dhat()),
+        normals_(world.surface),
         linear_(world.setup.linear, layout(world.assembly)) {
     const State state = State::start(world);
     std::vector<Real> mu;
-    const int materials = world.surface.materials;
-    for (int k = 0; k < materials * materials; ++k) mu.push_back(world.setup.scene.mu(k / materials, k % materials));
+    std::vector<Adhesion> adhesion;
+    for (int a = 0; a < world.surface.materials; ++a) {
+      for (int b = 0; b < world.surface.materials; ++b) {
+        mu.push_back(world.setup.scene.mu(a, b));
+        adhesion.push_back(world.setup.scene.adhesion(a, b));
+      }
+    }
     mu_.upload(mu);
+    adhesion_.upload(adhesion);
     for (Real m : world.assembly.mass) moving_mass_ += m;
     contact_on_ = is_on("barrier");
     begin(state, world.setup.scene.time.dt);
@@ -158,7 +167,9 @@ class SideStepper final : public Stepper {
             .body_target = body_target_.span(),
             .grip_target = grip_target_.span(),
             .grip_stiffness = grip_stiffness_.span(),
-            .mu = mu_.span()};
+            .mu = mu_.span(),
+            .adhesion = adhesion_.span(),
+            .normal = {}};
   }
 
   /// One step of dt; on failure two of dt/2, and so on `retries` times. `state` is changed on success only.
@@ -166,8 +177,9 @@ class SideStepper final : public Stepper {
     State next = state;
     close_grips(world_, next);
     begin(next, dt);
-    if (newton(report)) {
+    if (newton(next, report)) {
       read_back(next, dt);
+      next.memory = remember(dt);
       state = std::move(next);
       return true;
     }
@@ -202,12 +214,22 @@ class SideStepper final : public Stepper {
     objective_->set_candidates(search_.candidates());
   }
 
-  /// Newton's method from now_ == start_ to the end of the step.
-  bool newton(StepReport& report) {
+  /// What adheres at now_ after `dt` [s]: 0 at the start of a run, where pairs in the contact band are as engaged as new ones.
+  EffectMemory remember(Real dt) {
+    StateView s = view(now_);
+    s.dt = dt;
+    s.normal = normals_.at(s.x);
+    return objective_->remember(s);
+  }
+
+  /// Newton's method from now_ == start_, the start of a step at `state`, to its end.
+  bool newton(const State& state, StepReport& report) {
     const NewtonParams& params = world_.setup.newton;
     parallel_for(direction_.size(), stepping::Fill{direction_.span()});
     search_.forget();  // what earlier steps found must not change the order of this one's sums
     update_candidates(direction_.span());
+    objective_->recall(state.memory, view(now_), search_.surface());
+    if (state.time == 0) objective_->recall(remember(0), view(now_), search_.surface());
     objective_->begin_step(view(now_));
     {
       const Stopwatch watch(line_search_ms_);
@@ -351,12 +373,14 @@ class SideStepper final : public Stepper {
   const World& world_;
   Coordinates coordinates_;
   ContactSearch search_;
+  VertexNormals normals_;
   LinearSolver linear_;
   std::optional<Objective> objective_;
   Configuration start_, now_, trial_;
   Buffer<Vec3> x_tilde_, grip_target_, direction_, right_;
   Buffer<Pose> body_target_;
   Buffer<Real> grip_stiffness_, mu_;
+  Buffer<Adhesion> adhesion_;
   static constexpr Real kPositionRoundOff = 1e-15;
   HessianMode mode_ = HessianMode::exact;       // of the last direction
   EnergySum energy_;                            // at now_

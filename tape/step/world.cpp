@@ -84,6 +84,10 @@ std::string State::hash() const {
   }
   add(grip_base.data(), grip_base.size() * sizeof(Vec3));
   add(grip_closed.data(), grip_closed.size() * sizeof(int));
+  EffectMemory copy = memory;
+  for_each_memory(copy, [&](auto& pairs) {
+    for (auto& pair : pairs) pair.visit([&](auto& value) { add(&value, sizeof value); });
+  });
   char text[17];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(h));
   return text;

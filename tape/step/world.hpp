@@ -53,6 +53,7 @@ struct State {
   std::vector<BodyState> bodies;  ///< [bodies]
   std::vector<Vec3> grip_base;    ///< [springs] m, where the target of each spring was when its grip closed
   std::vector<int> grip_closed;   ///< [grips] 1 once it has closed
+  EffectMemory memory;            ///< of pairs that adhere
 
   static State start(const World& world);
   /// 64-bit FNV-1a of all bits above, as 16 hexadecimal digits.

@@ -104,7 +104,8 @@ void EffectWorld::add_pairs() {
                      .dhat = dhat,
                      .weight = 4e-6,
                      .mollifier = kind == PairKind::edge_edge ? 1e-3 * length4 : 0,
-                     .sharing = {{2, 2, 1}, {6, 5, 0}}});
+                     .sharing = {{2, 2, 1}, {6, 5, 0}},
+                     .triangle = kind == PairKind::vertex_triangle ? static_cast<int>(pairs.size()) : -1});
   };
   for (Real xi : {0.0, 9e-5}) {
     for (Real gap : {0.02, 0.3, 0.9}) {
@@ -121,10 +122,14 @@ void EffectWorld::add_pairs() {
     }
   }
   mu = {0.5, 0.7, 0.7, 1.0};
+  scene.adhesives = {{0, 1, {AdhesionLaw::per_pair, {{true, true}, {true, true}}, {.cn = 0.675, .ct = 0.5, .beta0 = 0.8}}}};
+  for (int a : {0, 1})
+    for (int b : {0, 1}) adhesion.push_back(scene.adhesion(a, b));
 }
 
 void EffectWorld::disturb() {
   x = x_start = x_tilde = assembly.x;
+  normal.assign(x.size(), Vec3(0, 0, 1));
   for (std::size_t i = 0; i < x.size(); ++i) {
     const bool strip = static_cast<int>(i) < assembly.strips[0].vertices;
     if (strip) x[i] += random_vector(1e-3);
@@ -149,7 +154,9 @@ StateView EffectWorld::view() const {
           span(body_target),
           span(grip_target),
           span(grip_stiffness),
-          span(mu)};
+          span(mu),
+          span(adhesion),
+          span(normal)};
 }
 StateView EffectWorld::start_view() const {
   StateView s = view();

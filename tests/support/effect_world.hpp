@@ -19,6 +19,8 @@ class EffectWorld {
   std::vector<Pose> body, body_target;
   std::vector<Vec3> grip_target;
   std::vector<Real> grip_stiffness, mu;
+  std::vector<Adhesion> adhesion;
+  std::vector<Vec3> normal;
   Real dt = 0.01;
 
   StateView view() const;
@@ -52,6 +54,12 @@ struct Built {
       typename T::Element e;
       for (const ContactPair& pair : world.pairs)
         if (term.lag(pair, start, e)) elements.push_back(e);
+    }
+    if constexpr (Remembers<T>) {
+      const StateView start = world.start_view();
+      typename T::Memory m;
+      for (const ContactPair& pair : world.pairs)
+        if (term.begin(pair, start, m)) elements.push_back(term.recall(m, pair, start));
     }
     term.elements = {elements.data(), static_cast<int>(elements.size())};
   }

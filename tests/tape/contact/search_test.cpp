@@ -215,7 +215,7 @@ TEST(ContactSearch, ConstantsOfAPairComeFromItsTwoPrimitives) {
   int kinds[2] = {0, 0};
   for (const ContactPair& p : search.candidates()) {
     ++kinds[static_cast<int>(p.kind)];
-    EXPECT_EQ(p.interface, 1 * 3 + 2);
+    EXPECT_EQ(p.interface, p.v[0] < 3 ? 2 * 3 + 1 : 1 * 3 + 2) << "the material of the first primitive, then that of the second";
     const bool small_vertex = p.v[0] >= 3;
     if (p.kind == PairKind::vertex_triangle) {
       EXPECT_DOUBLE_EQ(p.xi, small_vertex ? (p.v[0] == 3 ? 0.015 : 0.02) + 0.01 : 0.01 + 0.02);

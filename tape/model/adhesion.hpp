@@ -1,0 +1,51 @@
+#pragma once
+#include <array>
+#include <string_view>
+
+#include "tape/core/settings.hpp"
+
+namespace tape {
+/// How an interface sticks.
+enum class AdhesionLaw { none, per_pair };
+constexpr auto enum_names(AdhesionLaw) { return std::array<std::string_view, 2>{"none", "per_pair"}; }
+
+/// What tangential slip is measured from.
+enum class SlipFrom { step, bonding };
+constexpr auto enum_names(SlipFrom) { return std::array<std::string_view, 2>{"step", "bonding"}; }
+
+/// Faces of a strip: its normal points out of the backing. What adheres to a body adheres to both.
+enum class Face : int { backing, sticky };
+
+/// The cohesive law of the paper, eq. 2 and 3: newtons per vertex-triangle pair, so that the answer depends on the mesh.
+struct PairCohesion {
+  Real cn = 1;
+  Real ct = 1;
+  Real work = 1;
+  Real eta = 100;
+  Real gamma = 1;
+  Real p0 = 0;
+  Real beta0 = 0;
+  Real drop = 0.5;
+  SlipFrom slip = SlipFrom::step;
+  template <class F>
+  void fields(F&& f) {
+    f("cn", cn, "N", Range::positive(), "C_n, resistance of a pair to opening");
+    f("ct", ct, "N", Range::non_negative(), "C_t, resistance of a pair to sliding");
+    f("work", work, "1", Range::non_negative(), "W, retention: what opening and slip must exceed to debond");
+    f("eta", eta, "s", Range::positive(), "debonding is slower with a larger eta");
+    f("gamma", gamma, "1/s", Range::non_negative(), "how fast compression engages");
+    f("p0", p0, "", Range::non_negative(), "compression below which full engagement does not grow, as p of the paper");
+    f("beta0", beta0, "1", Range::closed(0, 1), "engagement of a pair that is new in the contact band");
+    f("drop", drop, "1", Range::closed(0.5, 100),
+      "opening d - d* at which a pair is dropped, in units of dhat; 0.5 is the edge of the band");
+    f("slip", slip, "", Range::any(), "slip since the start of the step (the paper: sticking creeps), or since bonding");
+  }
+};
+
+/// Adhesion between two materials, `first` and `second` in the order of ContactPair::interface.
+struct Adhesion {
+  AdhesionLaw law = AdhesionLaw::none;
+  bool sticks[2][2] = {};  ///< [face of the first][face of the second]: which faces adhere to which
+  PairCohesion pair;
+};
+}  // namespace tape

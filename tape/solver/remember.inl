@@ -1,0 +1,114 @@
+#pragma once
+#include "tape/solver/objective.hpp"
+
+/// What effects remember: elements out of it when a step starts, and back when it has ended.
+namespace tape::TAPE_SIDE {
+namespace objective {
+template <class Memory>
+TAPE_HD std::uint64_t memory_key(const Memory& m) {
+  return static_cast<std::uint64_t>(m.vertex) << 32 | static_cast<std::uint64_t>(m.triangle);
+}
+
+template <class T>
+struct Recall {
+  T term;
+  StateView s;
+  detail::SurfaceView surface;
+  Span<const typename T::Memory> memory;
+  Span<typename T::Element> elements;
+  TAPE_HD void operator()(int i) const {
+    elements[i] = term.recall(memory[i], surface.vertex_triangle(memory[i].vertex, memory[i].triangle), s);
+  }
+};
+
+/// Flags what is remembered after the step: pairs that were, then candidates that were not.
+template <class T>
+struct Judge {
+  T term;
+  StateView s;
+  Span<const typename T::Memory> before;
+  Span<const ContactPair> candidates;
+  Span<typename T::Memory> after;  ///< [before + candidates]
+  Span<int> flag;                  ///< [before + candidates + 1], the last stays 0
+  TAPE_HD void operator()(int i) const {
+    if (i < before.size) {
+      after[i] = before[i];
+      flag[i] = term.renew(s, i, after[i]) ? 1 : 0;
+    } else if (i < after.size) {
+      const ContactPair& pair = candidates[i - before.size];
+      flag[i] = pair.triangle >= 0 && !remembered(pair) && term.begin(pair, s, after[i]) ? 1 : 0;
+    } else {
+      flag[i] = 0;
+    }
+  }
+  TAPE_HD bool remembered(const ContactPair& pair) const {
+    const std::uint64_t key = static_cast<std::uint64_t>(pair.v[0]) << 32 | static_cast<std::uint64_t>(pair.triangle);
+    int low = 0, high = before.size;
+    while (low < high) {
+      const int middle = (low + high) / 2;
+      if (memory_key(before[middle]) < key) {
+        low = middle + 1;
+      } else {
+        high = middle;
+      }
+    }
+    return low < before.size && memory_key(before[low]) == key;
+  }
+};
+template <class Memory>
+struct Remembered {
+  Span<const Memory> after;
+  Span<const int> offset;  ///< scanned flags
+  Span<std::uint64_t> key;
+  Span<int> from;
+  TAPE_HD void operator()(int i) const {
+    if (offset[i + 1] == offset[i]) return;
+    key[offset[i]] = memory_key(after[i]);
+    from[offset[i]] = i;
+  }
+};
+template <class Memory>
+struct Gather {
+  Span<const Memory> after;
+  Span<const int> from;
+  Span<Memory> memory;
+  TAPE_HD void operator()(int i) const { memory[i] = after[from[i]]; }
+};
+}  // namespace objective
+
+inline void Objective::recall(const EffectMemory& memory, const StateView& s, const detail::SurfaceView& surface) {
+  for_each([&]<class T>(std::string_view, Term<T>& term) {
+    if constexpr (Remembers<T>) {
+      const Stopwatch watch(term.ms);
+      term.memory.upload(std::get<MemoryOf<T>>(memory).pairs);
+      term.elements.resize(term.memory.size());
+      term.view.elements = term.elements.span();
+      parallel_for(term.memory.size(), objective::Recall<T>{term.view, s, surface, term.memory.span(), term.elements.span()});
+    }
+  });
+}
+
+inline EffectMemory Objective::remember(const StateView& s) {
+  EffectMemory memory;
+  for_each([&]<class T>(std::string_view, Term<T>& term) {
+    if constexpr (Remembers<T>) {
+      using Memory = typename T::Memory;
+      const Stopwatch watch(term.ms);
+      const int all = term.memory.size() + candidates_.size;
+      Buffer<Memory> after;
+      Buffer<std::uint64_t> key;
+      Buffer<int> from;
+      after.resize(all);
+      scratch_.resize(all + 1);
+      parallel_for(all + 1, objective::Judge<T>{term.view, s, term.memory.span(), candidates_, after.span(), scratch_.span()});
+      const int kept = exclusive_scan(scratch_.span());
+      key.resize(kept), from.resize(kept), term.memory.resize(kept);
+      parallel_for(all, objective::Remembered<Memory>{after.span(), scratch_.span(), key.span(), from.span()});
+      sort_by_key(key, from);
+      parallel_for(kept, objective::Gather<Memory>{after.span(), from.span(), term.memory.span()});
+      std::get<MemoryOf<T>>(memory).pairs = term.memory.download();
+    }
+  });
+  return memory;
+}
+}  // namespace tape::TAPE_SIDE

@@ -1,0 +1,158 @@
+#include "tape/effects/cohesion.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tape/math/rotation.hpp"
+using namespace tape;
+
+namespace {
+constexpr Real kDhat = 1.8e-4, kXi = 9e-5, kRest = kXi + kDhat / 2;  // [m]
+
+/// A vertex over the middle of a triangle in the plane z = 0, both of strips that face each other with their sticky sides.
+struct Stuck {
+  PairCohesion law{.cn = 0.675, .ct = 0.675, .beta0 = 1};
+  std::vector<Vec3> start{{3e-4, 3e-4, kRest}, {0, 0, 0}, {0, 1e-3, 0}, {1e-3, 0, 0}}, x = start;
+  std::vector<Vec3> normal = std::vector<Vec3>(4, Vec3(0, 0, 1));
+  std::vector<Adhesion> adhesion{{AdhesionLaw::per_pair, {{false, false}, {false, true}}, {}}};
+  ContactPair pair{.v = {0, 1, 2, 3},
+                   .kind = PairKind::vertex_triangle,
+                   .interface = 0,
+                   .xi = kXi,
+                   .dhat = kDhat,
+                   .weight = 1e-6,
+                   .mollifier = 0,
+                   .sharing = {},
+                   .triangle = 7};
+  Real dt = 0.01;
+  Cohesion cohesion{{}, kDhat, 1e4};
+  Cohesion::Element element;
+
+  StateView view(const std::vector<Vec3>& at) {
+    adhesion[0].pair = law;
+    StateView s{};
+    s.dt = dt;
+    s.x = {at.data(), 4};
+    s.adhesion = {adhesion.data(), 1};
+    s.normal = {normal.data(), 4};
+    return s;
+  }
+  /// Starts a step at `start` and ends it at x.
+  StateView step(const Cohesion::Memory& m) {
+    element = cohesion.recall(m, pair, view(start));
+    cohesion.elements = {&element, 1};
+    return view(x);
+  }
+  Cohesion::Memory engaged(Real beta = 1) const { return {0, 7, beta, {0, 0}}; }
+};
+}  // namespace
+
+TEST(Cohesion, OpeningAndSlipCostWhatThePaperSays) {  // eq. 2; checks.md part 3
+  Stuck s;
+  s.x[0].z() += kDhat;
+  EXPECT_NEAR(s.cohesion.energy(s.step(s.engaged()), 0), 6.075e-5, 1e-13);
+  s.x[0] = s.start[0] + Vec3(0, 0, 1e-5);
+  EXPECT_NEAR(s.cohesion.gradient(s.step(s.engaged()), 0)[2], 0.675 * 1e-5 / kDhat, 1e-12) << "Cn x/dhat";
+  s.x[0] = s.start[0] + kDhat * Vec3(0.6, 0.8, 0);
+  EXPECT_NEAR(s.cohesion.energy(s.step(s.engaged()), 0), 1.215e-4, 1e-13);
+  const VecN<12> g = s.cohesion.gradient(s.step(s.engaged()), 0);
+  EXPECT_NEAR(g.head<2>().norm(), 2 * 0.675, 1e-9) << "2 Ct s/dhat";
+  EXPECT_NEAR(g[0] / g[1], 0.75, 1e-9);
+  EXPECT_NEAR(s.cohesion.energy(s.step(s.engaged(0.5)), 0), 1.215e-4 / 4, 1e-13) << "beta^2";
+}
+TEST(Cohesion, APairThatTurnsAsAWholeDoesNotSlip) {
+  Stuck s;
+  s.start[0] = Vec3(4e-4, -3e-5, kRest);  // beside an edge: the offset leans
+  const Pose by{rotation_exp(Vec3(0.3, 0.5, -0.2)), Vec3(1e-3, 0, 0)};
+  for (int k = 0; k < 4; ++k) s.x[static_cast<std::size_t>(k)] = apply(by, s.start[static_cast<std::size_t>(k)]);
+  const StateView end = s.step(s.engaged());
+  s.element.rest = PairState::at(s.pair, end.x).d;
+  EXPECT_LT(s.cohesion.gradient(end, 0).norm(), 1e-12 * 0.675);
+}
+TEST(Cohesion, ConstantOpeningDebondsAsExplicitEulerSays) {  // checks.md part 3
+  for (const auto& [opening, beta] : {std::pair{0.75, 0.50285132}, std::pair{1.0, 0.26362698}}) {
+    Stuck s;
+    s.law.drop = 2;
+    s.start[0].z() = s.x[0].z() = kRest + opening * kDhat;
+    Cohesion::Memory m = s.engaged();
+    for (int k = 0; k < 1000; ++k) {
+      const StateView end = s.step(m);
+      ASSERT_TRUE(s.cohesion.renew(end, 0, m));
+    }
+    EXPECT_NEAR(m.beta, beta, 1e-8) << opening;
+  }
+}
+TEST(Cohesion, DebondingStartsAtHalfABandOfOpening) {  // W = 1, beta = 1: a_n = 1 at x = dhat/2
+  for (const auto& [opening, loses] : {std::pair{0.499, false}, std::pair{0.501, true}}) {
+    Stuck s;
+    s.law.drop = 1;
+    s.x[0].z() = kRest + opening * kDhat;
+    Cohesion::Memory m = s.engaged();
+    const StateView end = s.step(m);
+    ASSERT_TRUE(s.cohesion.renew(end, 0, m));
+    EXPECT_EQ(m.beta < 1, loses) << opening;
+  }
+}
+TEST(Cohesion, WorkOfPullingAPairOffDependsOnWhereItIsDropped) {  // trap T4: 6 mm/s, work/(Cn dhat)
+  for (const auto& [drop, work] : {std::pair{1.0, 0.499}, std::pair{5.0, 8.90}}) {
+    Stuck s;
+    s.law.drop = drop;
+    Cohesion::Memory m = s.engaged();
+    Real sum = 0;
+    for (int k = 0;; ++k) {
+      s.start = s.x;
+      s.x[0].z() += 6e-3 * s.dt;
+      const StateView end = s.step(m);
+      const Real before = s.cohesion.energy(s.view(s.start), 0);
+      sum += s.cohesion.energy(end, 0) - before;  // with beta held, as in the step
+      if (!s.cohesion.renew(end, 0, m)) break;
+      ASSERT_LT(k, 100);
+    }
+    EXPECT_NEAR(sum / (0.675 * kDhat), work, 0.005 * work) << drop;
+  }
+}
+TEST(Cohesion, CompressionEngagesInOneStepAtTheReferencePressure) {  // p0 = 0: beta 0 -> 1 in 10 ms where p >= p_b
+  Stuck s;
+  s.law.beta0 = 0;
+  Cohesion::Memory m{};
+  s.x[0].z() = kXi + 0.5 * kDhat;
+  EXPECT_TRUE(s.cohesion.begin(s.pair, s.view(s.x), m));
+  EXPECT_NEAR(m.beta, 1, 1e-12);
+  EXPECT_EQ(m.vertex, 0);
+  EXPECT_EQ(m.triangle, 7);
+  s.x[0].z() = kXi + 0.98 * kDhat;
+  EXPECT_TRUE(s.cohesion.begin(s.pair, s.view(s.x), m));
+  EXPECT_GT(m.beta, 0);
+  EXPECT_LT(m.beta, 0.05);
+  s.x[0].z() = kXi + 1.001 * kDhat;
+  EXPECT_FALSE(s.cohesion.begin(s.pair, s.view(s.x), m)) << "out of the band";
+}
+TEST(Cohesion, OnlyStickyFacesAdhere) {
+  Stuck s;
+  Cohesion::Memory m{};
+  EXPECT_TRUE(s.cohesion.begin(s.pair, s.view(s.x), m)) << "the triangle's normal points down, the vertex's up: sticky faces meet";
+  s.normal[0] = Vec3(0, 0, -1);
+  EXPECT_FALSE(s.cohesion.begin(s.pair, s.view(s.x), m)) << "the vertex turns its backing";
+  s.normal[0] = Vec3(0, 0, 1);
+  std::swap(s.pair.v[1], s.pair.v[2]);
+  EXPECT_FALSE(s.cohesion.begin(s.pair, s.view(s.x), m)) << "the triangle turns its backing";
+  s.adhesion[0].sticks[1][0] = true;
+  EXPECT_TRUE(s.cohesion.begin(s.pair, s.view(s.x), m)) << "sticky vertex on a backing";
+  s.pair.kind = PairKind::edge_edge;
+  EXPECT_FALSE(s.cohesion.begin(s.pair, s.view(s.x), m)) << "edges never stick";
+}
+TEST(Cohesion, SlipSinceBondingAddsUpAndSlipOfTheStepDoesNot) {
+  for (SlipFrom from : {SlipFrom::step, SlipFrom::bonding}) {
+    Stuck s;
+    s.law.slip = from;
+    Cohesion::Memory m = s.engaged();
+    Real force = 0;
+    for (int k = 1; k <= 4; ++k) {
+      s.start = s.x;
+      s.x[0] += Vec3(3e-6, 4e-6, 0);
+      const StateView end = s.step(m);
+      force = s.cohesion.gradient(end, 0).head<2>().norm();
+      EXPECT_NEAR(force, 2 * 0.675 * 5e-6 / kDhat * (from == SlipFrom::step ? 1 : k), 1e-9) << k;
+      ASSERT_TRUE(s.cohesion.renew(end, 0, m));
+    }
+  }
+}
