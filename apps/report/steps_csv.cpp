@@ -20,6 +20,15 @@ void visit_columns(const World& world, const cosim::StepRow& row, const F& f) {
     f(line.name + "_ms", found == r.effects.end() ? 0 : found->ms);
   }
   f("drive_work_J", row.energy.work), f("energy_balance_J", row.energy.balance);
+  for (std::size_t k = 0; k < world.setup.scene.adhesives.size(); ++k) {
+    const AdhesivePair& pair = world.setup.scene.adhesives[k];
+    const auto name = [&](int m) { return world.setup.scene.materials[static_cast<std::size_t>(m)].name; };
+    const std::string between = "adhesion_" + name(pair.a) + "_" + name(pair.b) + "_";
+    const AdhesionReport a = k < r.adhesion.size() ? r.adhesion[k] : AdhesionReport{};
+    f(between + "normal_N", a.normal), f(between + "tangential_N", a.tangential), f(between + "live", a.live);
+    f(between + "from_m", a.from), f(between + "to_m", a.to);
+  }
+  if (!world.setup.scene.adhesives.empty()) f("adhesion_work_J", r.adhesion_work);
   const auto vector = [&](const std::string& name, const std::string& unit, const Vec3& v) {
     for (int c = 0; c < 3; ++c) f(name + "_" + "xyz"[c] + "_" + unit, v[c]);
   };

@@ -49,6 +49,8 @@ std::string settings_text() {
   add<StripParams>(table, "strip");
   add<Film>(table, "film");
   add<Material>(table, "materials.NAME");
+  add<PairCohesion>(table, "interfaces.N (per_pair)");
+  add<BondLaw>(table, "interfaces.N (bond)");
   add<ContactParams>(table, "contact");
   add<NewtonParams>(table, "solver");
   add<LinearParams>(table, "solver");

@@ -197,6 +197,7 @@ std::string Hdf5Reader::read_text(const std::string& attribute) const {
   if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 || H5Tget_size(type) > kMost) fail(attribute);
   std::string text(H5Tget_size(type), '\0');
   if (H5Aread(read, type, text.data()) < 0) fail(attribute);
-  return text.c_str();
+  text.resize(std::min(text.find('\0'), text.size()));
+  return text;
 }
 }  // namespace cosim

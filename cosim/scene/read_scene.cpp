@@ -113,23 +113,69 @@ class SceneReader {
     }
   }
 
-  /// Friction between two things, each a material or an object. A later entry of the list overrides an earlier one.
+  /// Friction and adhesion between two things, each a material or an object. A later entry of the list overrides an earlier one.
   void interface(const Reader& entry) {
     const std::vector<Reader> between = entry["between"].items();
     if (between.size() != 2) entry["between"].fail("must be a list of two names, of materials or of things");
-    const std::vector<int> first = side(between[0]), second = side(between[1]);
-    const Real mu = entry["mu"].number(Range::non_negative(), "");
-    for (int a : first)
-      for (int b : second) set_friction(a, b, mu);
+    const Side first = side(between[0]), second = side(between[1]);
+    const Reader mu = entry["mu"], law = entry["law"];
+    if (!mu && !law) entry.fail("says neither mu nor law");
+    if (mu) for_each_pair(first, second, [&, value = mu.number(Range::non_negative(), "")](int a, int b) { set_friction(a, b, value); });
+    if (!law) return;
+    tape::AdhesivePair adhesive;
+    adhesive.adhesion = adhesion(entry, law.choice<tape::AdhesionLaw>());
+    for_each_pair(first, second, [&](int a, int b) {
+      adhesive.a = a, adhesive.b = b;
+      if (!of_strip(a) && !of_strip(b)) entry["between"].fail("names no strip: only tape sticks");
+      for (int f = 0; f < 2; ++f)
+        for (int g = 0; g < 2; ++g)
+          adhesive.adhesion.sticks[f][g] = (first.faces[f] && second.faces[g]) || (a == b && second.faces[f] && first.faces[g]);
+      set_adhesion(adhesive);
+    });
   }
-  /// The materials that a name stands for. An object that shares its material gets its own copy, so that the others keep theirs.
-  std::vector<int> side(const Reader& name) {
+  static tape::Adhesion adhesion(const Reader& entry, tape::AdhesionLaw law) {
+    tape::Adhesion out{.law = law, .sticks = {}, .pair = {}, .bond = {}};
+    if (law == tape::AdhesionLaw::bond) {
+      entry.read(out.bond);
+      if (out.bond.floor >= out.bond.reach) entry["floor"].fail("not below reach: no pair would ever bond");
+    }
+    if (law == tape::AdhesionLaw::per_pair) {
+      entry.read(out.pair);
+      if (out.pair.beta0 == 0 && out.pair.gamma == 0) entry["gamma"].fail("0 with beta0 = 0: no pair would ever engage");
+    }
+    return out;
+  }
+  bool of_strip(int material) const {
+    return std::any_of(scene_.strips.begin(), scene_.strips.end(), [&](const Strip& s) { return s.material == material; });
+  }
+
+  /// One side of an interface: materials, and which faces of a strip are meant (backing, sticky).
+  struct Side {
+    std::vector<int> materials;
+    bool faces[2];
+  };
+  template <class F>
+  static void for_each_pair(const Side& first, const Side& second, const F& f) {
+    for (int a : first.materials)
+      for (int b : second.materials) f(a, b);
+  }
+  /// What a name stands for; `tape.sticky` and `tape.backing` are faces of a strip. An object that shares its material gets its own copy,
+  /// so that the others keep theirs.
+  Side side(const Reader& name) {
+    const std::string text = name.text();
+    const bool sticky = text.ends_with(".sticky"), backing = text.ends_with(".backing");
+    const Side out{materials_of(name, text.substr(0, text.size() - (sticky ? 7 : backing ? 8 : 0))), {!sticky, !backing}};
+    for (int m : out.materials)
+      if ((sticky || backing) && !of_strip(m)) name.fail("is no strip: only strips have a sticky face and a backing");
+    return out;
+  }
+  std::vector<int> materials_of(const Reader& name, const std::string& text) {
     std::vector<std::string> objects, all;
     for (const Strip& s : scene_.strips) objects.push_back(s.name);
     for (const tape::Body& b : scene_.bodies) objects.push_back(b.name);
     all = objects;
     for (const tape::Material& m : scene_.materials) all.push_back(m.name);
-    const std::size_t chosen = choose(name, all);
+    const std::size_t chosen = choose(name, text, all);
     if (chosen < objects.size()) return {own_material(chosen)};
     std::vector<int> same;  // with the copies that objects have of it
     for (std::size_t i = 0; i < scene_.materials.size(); ++i)
@@ -155,7 +201,20 @@ class SceneReader {
       scene_.frictions.push_back({f.a == mine ? copy : f.a, f.b == mine && f.a != mine ? copy : f.b, f.mu});
       if (f.a == f.b) scene_.frictions.push_back({copy, copy, f.mu});
     }
+    for (tape::AdhesivePair p : std::vector<tape::AdhesivePair>(scene_.adhesives)) {
+      if (p.a != mine && p.b != mine) continue;
+      const tape::AdhesivePair known = p;
+      (p.a == mine ? p.a : p.b) = copy;
+      scene_.adhesives.push_back(p);
+      if (known.a == known.b) scene_.adhesives.push_back({copy, copy, known.adhesion});
+    }
     return mine = copy;
+  }
+  void set_adhesion(const tape::AdhesivePair& adhesive) {
+    std::erase_if(scene_.adhesives, [&](const tape::AdhesivePair& p) {
+      return (p.a == adhesive.a && p.b == adhesive.b) || (p.a == adhesive.b && p.b == adhesive.a);
+    });
+    scene_.adhesives.push_back(adhesive);
   }
   void set_friction(int a, int b, Real mu) {
     for (tape::FrictionPair& f : scene_.frictions)

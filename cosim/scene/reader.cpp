@@ -121,8 +121,9 @@ void Reader::require_known() const {
     for (const Reader& item : items()) item.require_known();
 }
 
-std::size_t choose(const Reader& reader, const std::vector<std::string>& names) {
-  const std::string text = reader.text();
+std::size_t choose(const Reader& reader, const std::vector<std::string>& names) { return choose(reader, reader.text(), names); }
+
+std::size_t choose(const Reader& reader, const std::string& text, const std::vector<std::string>& names) {
   if (names.empty()) reader.fail("unknown; there is none of its kind in this scene");
   const auto it = std::find(names.begin(), names.end(), text);
   if (it != names.end()) return static_cast<std::size_t>(it - names.begin());

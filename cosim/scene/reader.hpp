@@ -67,6 +67,8 @@ class Reader {
 
 /// A name out of a list. @return its position @throws InputError with the names that come near
 std::size_t choose(const Reader& reader, const std::vector<std::string>& names);
+/// The same where `text` is the part of the value that names something.
+std::size_t choose(const Reader& reader, const std::string& text, const std::vector<std::string>& names);
 
 template <tape::NamedEnum E>
 E Reader::choice() const {

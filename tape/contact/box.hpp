@@ -23,7 +23,7 @@ TAPE_HD inline Box joined(const Box& a, const Box& b) { return {a.low.cwiseMin(b
 /// Holds the whole path, t in [0, 1]: the box of its ends, inflated for an arc by the largest distance from its chord.
 TAPE_HD inline Box path_box(const VertexPath& path) {
   const Vec3 x0 = path.centre + path.arm, x1 = path.at(1);
-  const Box chord{x0.cwiseMin(x1), x0.cwiseMax(x1)};
+  Box chord{x0.cwiseMin(x1), x0.cwiseMax(x1)};
   if (path.straight()) return chord;
   const Real angle = path.spin.norm();
   return inflated(chord, chord_deviation(path.spin.cross(path.arm).norm() / angle, angle));

@@ -93,7 +93,7 @@ std::string description(const SurfaceMesh& mesh, const ContactPair& pair, const 
   return primitive_text(mesh, v.first(n)) + " and " + primitive_text(mesh, v.subspan(n)) + " at " + position_text(where);
 }
 
-void check_start(const std::vector<Vec3>& x, const SurfaceMesh& mesh, Real dhat) {
+void check_start(const std::vector<Vec3>& x, const SurfaceMesh& mesh, Real dhat, const std::vector<VertexTriangle>& bonded) {
   require_finite(x, mesh);
   if (const Intersections found = find_intersections(mesh, x, 1); found.count > 0)
     throw InputError("start: " + std::to_string(found.count) + (found.count == 1 ? " intersection: " : " intersections, the first: ") +
@@ -102,6 +102,7 @@ void check_start(const std::vector<Vec3>& x, const SurfaceMesh& mesh, Real dhat)
   const Buffer<Vec3> positions(x);
   const Buffer<VertexOwner> owner(std::vector<VertexOwner>(x.size()));  // as if nothing moved
   on_cpu::ContactSearch search(mesh, dhat, dhat);
+  search.set_bonded(bonded);
   search.update({positions.span(), owner.span(), {}, {}}, 0);
   const SmallestGap smallest = on_cpu::smallest_gap(search.candidates(), positions.span());
   if (smallest.gap > 0) return;

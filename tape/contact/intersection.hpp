@@ -28,7 +28,8 @@ std::string description(const SurfaceMesh& mesh, const ContactPair& pair, const 
 
 /// Requires a state from which the barrier can start: finite, nothing intersects, every gap is positive.
 /// @param x     [nv] m
-/// @param dhat  [m] activation distance
+/// @param dhat    [m] activation distance
+/// @param bonded  pairs whose gap does not count (ContactSearch::set_bonded)
 /// @throws InputError naming objects, primitives, place and gap of the first crossing or else of the smallest gap
-void check_start(const std::vector<Vec3>& x, const SurfaceMesh& mesh, Real dhat);
+void check_start(const std::vector<Vec3>& x, const SurfaceMesh& mesh, Real dhat, const std::vector<VertexTriangle>& bonded = {});
 }  // namespace tape

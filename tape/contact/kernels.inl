@@ -224,6 +224,45 @@ struct EdgeQuery {
   }
 };
 
+/// Place of a key in a sorted list of pairs, -1 if it is not there.
+template <class Pair>
+TAPE_HD int find_pair(Span<const Pair> sorted, std::uint64_t key) {
+  int low = 0, high = sorted.size;
+  while (low < high) {
+    const int middle = (low + high) / 2;
+    if (sorted[middle].key() < key) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low < sorted.size && sorted[low].key() == key ? low : -1;
+}
+struct MakeBonded {
+  SurfaceView s;
+  Span<const VertexTriangle> names;
+  Span<ContactPair> pairs;
+  TAPE_HD void operator()(int i) const {
+    pairs[i] = s.vertex_triangle(names[i].vertex, names[i].triangle);
+    pairs[i].xi = pairs[i].dhat = 0;
+  }
+};
+struct FlagUnbonded {
+  Span<const ContactPair> found;
+  Span<const VertexTriangle> bonded;
+  Span<int> flag;  ///< [found + 1], the last stays 0
+  TAPE_HD void operator()(int i) const {
+    flag[i] = i < found.size && (found[i].triangle < 0 || find_pair(bonded, found[i].name().key()) < 0) ? 1 : 0;
+  }
+};
+struct KeepFlagged {
+  Span<const ContactPair> found;
+  Span<const int> offset;  ///< scanned flags
+  Span<ContactPair> pairs;
+  TAPE_HD void operator()(int i) const {
+    if (offset[i + 1] > offset[i]) pairs[offset[i]] = found[i];
+  }
+};
 struct Fill {
   Span<Real> values;
   Real value;

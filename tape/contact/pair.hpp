@@ -8,6 +8,13 @@ namespace tape {
 /// Vertex against triangle (v[0]; v[1..3]) or edge against edge (v[0..1]; v[2..3]).
 enum class PairKind : int { vertex_triangle, edge_edge };
 
+/// Names a vertex-triangle pair.
+struct VertexTriangle {
+  int vertex, triangle;
+  /// Orders pairs by vertex, then triangle.
+  TAPE_HD std::uint64_t key() const { return static_cast<std::uint64_t>(vertex) << 32 | static_cast<std::uint64_t>(triangle); }
+};
+
 /// Which of a triangle's edges and vertices other triangles have too: the barrier must count each place of a surface once.
 struct Sharing {
   std::uint16_t edge[3] = {1, 1, 1};    ///< triangles at the edge from vertex k to k + 1
@@ -25,6 +32,7 @@ struct ContactPair {
   Real mollifier;     ///< [m^4] edge-edge: 1e-3 |ea|^2 |eb|^2 at rest; below this squared cross product the pair fades out
   Sharing sharing;    ///< of the triangle
   int triangle = -1;  ///< id of the triangle; -1: edges
+  TAPE_HD VertexTriangle name() const { return {v[0], triangle}; }  ///< of a vertex-triangle pair
 };
 
 TAPE_HD inline Closest closest(PairKind kind, const Vec3 (&x)[4]) {

@@ -29,6 +29,10 @@ class ContactSearch {
   bool update(const PathView& paths, Real margin);
   /// Finds the candidates anew, whatever is known.
   void rebuild(const PathView& paths, Real margin);
+  /// Pairs that something else holds apart, sorted by key, each once: they leave the candidates, and CCD only keeps them from crossing.
+  void set_bonded(const std::vector<VertexTriangle>& bonded);
+  /// They, with their constants; xi and dhat are 0.
+  Span<const ContactPair> bonded() const { return bonded_.span(); }
   /// Makes the next update a rebuild.
   void forget() { built_ = false; }
   Span<const ContactPair> candidates() const { return pairs_.span(); }
@@ -42,6 +46,7 @@ class ContactSearch {
   void scale(Span<Vec3> direction) const;
 
  private:
+  void drop_bonded();
   void join_components(const detail::SurfaceView& s);
 
   detail::SurfaceBuffers surface_;
@@ -54,7 +59,9 @@ class ContactSearch {
   Buffer<detail::TriangleShape> triangles_;
   BoxTree triangle_tree_, edge_tree_;
   detail::Hits vertex_hits_, edge_hits_;
-  Buffer<ContactPair> pairs_;
+  Buffer<VertexTriangle> bonded_names_;
+  Buffer<ContactPair> bonded_, found_, pairs_;
+  Buffer<int> kept_;       ///< [found + 1]
   Buffer<Real> touching_;  ///< [objects objects]
   Buffer<int> component_;  ///< [objects] -1: fixed
   Buffer<int> block_object_;

@@ -92,14 +92,15 @@ template <class T, class Kernel, class Combine>
 T reduce(int n, T identity, Kernel k, Combine combine) {
   if (n <= 0) return identity;
   if (recording_launches()) note_launch(typeid(Kernel).name());
-  std::vector<T> partial(static_cast<std::size_t>(detail::chunk_count(n)), identity);
+  const int chunks = detail::chunk_count(n);
+  const auto partial = std::make_unique<T[]>(static_cast<std::size_t>(chunks));  // no vector: bits of vector<bool> share bytes
   detail::for_chunks(n, [&](int c, int begin, int end) {
     T sum = identity;
     for (int i = begin; i < end; ++i) sum = combine(sum, k(i));
-    partial[static_cast<std::size_t>(c)] = sum;
+    partial[c] = sum;
   });
   T sum = identity;
-  for (const T& p : partial) sum = combine(sum, p);
+  for (int c = 0; c < chunks; ++c) sum = combine(sum, partial[c]);
   return sum;
 }
 

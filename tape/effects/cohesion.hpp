@@ -20,9 +20,8 @@ TAPE_HD inline bool adheres(const Adhesion& adhesion, const ContactPair& pair, c
 struct Cohesion {
   static constexpr std::string_view name = "cohesion";
   using Params = NoParams;
-  /// What a pair remembers, by vertex and triangle.
-  struct Memory {
-    int vertex, triangle;
+  /// What a pair remembers.
+  struct Memory : VertexTriangle {
     Real beta;     ///< [1] engagement
     Real slip[2];  ///< [m^2] since bonding, covariant
     template <class F>
@@ -110,7 +109,7 @@ struct Cohesion {
     const PairState p = PairState::at(pair, s.x);
     if (!(p.d < pair.xi + dhat) || !adheres(a, pair, p, s)) return false;
     const Real grown = s.dt * rate(a.pair, pair.xi, 0, p.d, 0);
-    out = {pair.v[0], pair.triangle, std::fmin(std::fmax(a.pair.beta0, grown), 1), {0, 0}};
+    out = {pair.name(), std::fmin(std::fmax(a.pair.beta0, grown), 1), {0, 0}};
     return out.beta > 0;
   }
   /// What element i remembers at the end of a step. @return false: the pair is dropped
@@ -123,6 +122,15 @@ struct Cohesion {
     m.beta = std::fmin(std::fmax(m.beta + s.dt * rate(law, e.pair.xi, m.beta, d, slip.dot(e.inverse_metric * slip)), 0), 1);
     for (int a = 0; a < 2; ++a) m.slip[a] = law.slip == SlipFrom::bonding ? slip[a] : 0;
     return true;
+  }
+  TAPE_HD AdhesiveForce force(const StateView& s, int i) const {
+    const Element& e = elements[i];
+    const Vec2 slip = Plane(e, s.x).along() - e.start;
+    return {.interface = e.pair.interface,
+            .vertex = e.pair.v[0],
+            .live = e.opening > 0,
+            .normal = e.opening * (PairState::at(e.pair, s.x).d - e.rest),
+            .tangential = e.sliding * std::sqrt(slip.dot(e.inverse_metric * slip))};
   }
   /// d beta/dt [1/s].  Source: [the paper, eq. 3], without a gain where the barrier has no compression to compare with.
   /// @param slip2  [m^2] |u|^2

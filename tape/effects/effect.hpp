@@ -22,11 +22,14 @@ namespace tape {
 ///   static constexpr bool free_vertices = true the stencil names strip vertices only: nothing to relocate
 ///   static constexpr bool incremental = true   its energy belongs to the step and is not stored: inertia, friction
 ///   static constexpr bool contact_pairs = true elements are the candidates of the contact search
-///   struct Memory                              what it remembers of a vertex-triangle pair from step to step, with vertex, triangle and
-///                                              visit(f) over all its members (Real or int):
+///   struct Memory : VertexTriangle             what it remembers of a pair from step to step, with visit(f) over all its members (Real or
+///                                              int):
 ///     Element recall(memory, pair, s)          the element of a remembered pair, at the start of each step
 ///     bool renew(s, i, Memory&)                what element i remembers at the end of the step; false: the pair is forgotten
 ///     bool begin(pair, s, Memory& out)         whether a candidate that was not remembered is from now on
+///     AdhesiveForce force(s, i)                what element i carries, for the report
+///     Real accuracy_to_judge(s, i)             optional: [m] to which positions must be solved before renew may judge element i
+///     Memory::replaces_contact()               optional: while true the pair leaves contact and friction; CCD only keeps it from crossing
 ///   bool active(s, i)                          false: element i contributes nothing here, gradient and Hessian skip it
 template <class T>
 concept Effect = requires(const Scene& scene, const Assembly& assembly, typename T::Params& p, std::vector<typename T::Element>& elements,
@@ -42,12 +45,22 @@ concept Effect = requires(const Scene& scene, const Assembly& assembly, typename
   term.hessian(s, i, mode);                                       // [N/m] MatN<3K, 3K>
 };
 
+/// What one adhering pair carries.
+struct AdhesiveForce {
+  int interface;    ///< of ContactPair
+  int vertex;       ///< of the pair
+  bool live;        ///< it still adheres
+  Real normal;      ///< [N] that holds the pair together; negative: pushes it apart
+  Real tangential;  ///< [N] against sliding
+};
+
 template <class T>
 concept Remembers = requires(const T& term, typename T::Memory& m, const ContactPair& pair, const StateView& s, int i) {
   { term.recall(m, pair, s) } -> std::same_as<typename T::Element>;
   { term.renew(s, i, m) } -> std::same_as<bool>;
   { term.begin(pair, s, m) } -> std::same_as<bool>;
-  { m.vertex + m.triangle } -> std::same_as<int>;
+  { term.force(s, i) } -> std::same_as<AdhesiveForce>;
+  requires std::derived_from<typename T::Memory, VertexTriangle>;
 };
 
 /// Params of an effect that has nothing to set.

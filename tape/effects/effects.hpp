@@ -6,6 +6,7 @@
 #include "tape/effects/bending.hpp"
 #include "tape/effects/body_drive.hpp"
 #include "tape/effects/body_inertia.hpp"
+#include "tape/effects/bonds.hpp"
 #include "tape/effects/cohesion.hpp"
 #include "tape/effects/friction.hpp"
 #include "tape/effects/gravity.hpp"
@@ -16,7 +17,7 @@
 namespace tape {
 /// The one list of effects. Reading and writing scenes, checks, assembly on both back ends, timing, reports and the tests that hold
 /// for all of them follow from it.
-using Effects = std::tuple<Inertia, BodyInertia, BodyDrive, Gravity, Membrane, Bending, Barrier, Friction, Cohesion, Tether>;
+using Effects = std::tuple<Inertia, BodyInertia, BodyDrive, Gravity, Membrane, Bending, Barrier, Friction, Cohesion, Bonds, Tether>;
 
 /// The settings of one effect, told apart by the effect even where two have none.
 template <class T>
@@ -55,6 +56,17 @@ void for_each_memory(EffectMemory& memory, const F& f) {
     if constexpr (Remembers<T>) f(of_effect.pairs);
   };
   std::apply([&](auto&... of_effect) { (call(of_effect), ...); }, memory);
+}
+
+/// Vertex and triangle of all pairs that have left contact, sorted.
+inline std::vector<VertexTriangle> pairs_out_of_contact(EffectMemory& memory) {
+  std::vector<VertexTriangle> pairs;
+  for_each_memory(memory, [&](auto& remembered) {
+    if constexpr (requires { remembered[0].replaces_contact(); })
+      for (const auto& m : remembered)
+        if (m.replaces_contact()) pairs.push_back({m.vertex, m.triangle});
+  });
+  return pairs;
 }
 
 /// Calls f(std::type_identity<T>) for each effect, in the order of the list.

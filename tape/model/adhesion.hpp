@@ -6,8 +6,8 @@
 
 namespace tape {
 /// How an interface sticks.
-enum class AdhesionLaw { none, per_pair };
-constexpr auto enum_names(AdhesionLaw) { return std::array<std::string_view, 2>{"none", "per_pair"}; }
+enum class AdhesionLaw { none, per_pair, bond };
+constexpr auto enum_names(AdhesionLaw) { return std::array<std::string_view, 3>{"none", "per_pair", "bond"}; }
 
 /// What tangential slip is measured from.
 enum class SlipFrom { step, bonding };
@@ -42,10 +42,28 @@ struct PairCohesion {
   }
 };
 
+/// Releasable bonds of the paper, eq. 4: each replaces contact, friction and cohesion of a vertex-triangle pair.
+struct BondLaw {
+  Real kappa_b = 1e6;
+  Real break_force = 0.5;
+  Real reach = 1;
+  Real floor = 0.5;
+  int cooldown = 3;
+  template <class F>
+  void fields(F&& f) {
+    f("kappa_b", kappa_b, "Pa", Range::positive(), "stiffness of a bond");
+    f("break_force", break_force, "N", Range::positive(), "force on the vertex at which a bond in tension is released");
+    f("reach", reach, "1", Range::closed(0.5, 1), "gap up to which a pair bonds, in units of dhat");
+    f("floor", floor, "1", Range::closed(0, 0.9), "gap from which on a pair bonds, in units of dhat: what is pressed hard does not");
+    f("cooldown", cooldown, "steps", Range::closed(0, 1000), "for how long a released pair does not bond again");
+  }
+};
+
 /// Adhesion between two materials, `first` and `second` in the order of ContactPair::interface.
 struct Adhesion {
   AdhesionLaw law = AdhesionLaw::none;
   bool sticks[2][2] = {};  ///< [face of the first][face of the second]: which faces adhere to which
   PairCohesion pair;
+  BondLaw bond;
 };
 }  // namespace tape

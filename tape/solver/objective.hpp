@@ -81,6 +81,10 @@ class Objective {
   void recall(const EffectMemory& memory, const StateView& s, const detail::SurfaceView& surface);
   /// What is remembered of a step that ended at s.
   EffectMemory remember(const StateView& s);
+  /// [m] to which positions must be solved before `remember` may judge s; infinite if nothing is near a threshold.
+  Real accuracy_to_judge(const StateView& s);
+  /// Energy [J] of what adheres.
+  Real adhesive_energy(const StateView& s);
   EnergySum energy(const StateView& s);
   /// Gradient and matrix at s.
   void linearize(const StateView& s, HessianMode mode);

@@ -1,14 +1,9 @@
 #pragma once
-#include "tape/solver/objective.hpp"
+#include "tape/solver/objective.inl"
 
 /// What effects remember: elements out of it when a step starts, and back when it has ended.
 namespace tape::TAPE_SIDE {
 namespace objective {
-template <class Memory>
-TAPE_HD std::uint64_t memory_key(const Memory& m) {
-  return static_cast<std::uint64_t>(m.vertex) << 32 | static_cast<std::uint64_t>(m.triangle);
-}
-
 template <class T>
 struct Recall {
   T term;
@@ -36,23 +31,10 @@ struct Judge {
       flag[i] = term.renew(s, i, after[i]) ? 1 : 0;
     } else if (i < after.size) {
       const ContactPair& pair = candidates[i - before.size];
-      flag[i] = pair.triangle >= 0 && !remembered(pair) && term.begin(pair, s, after[i]) ? 1 : 0;
+      flag[i] = pair.triangle >= 0 && detail::find_pair(before, pair.name().key()) < 0 && term.begin(pair, s, after[i]) ? 1 : 0;
     } else {
       flag[i] = 0;
     }
-  }
-  TAPE_HD bool remembered(const ContactPair& pair) const {
-    const std::uint64_t key = static_cast<std::uint64_t>(pair.v[0]) << 32 | static_cast<std::uint64_t>(pair.triangle);
-    int low = 0, high = before.size;
-    while (low < high) {
-      const int middle = (low + high) / 2;
-      if (memory_key(before[middle]) < key) {
-        low = middle + 1;
-      } else {
-        high = middle;
-      }
-    }
-    return low < before.size && memory_key(before[low]) == key;
   }
 };
 template <class Memory>
@@ -63,9 +45,18 @@ struct Remembered {
   Span<int> from;
   TAPE_HD void operator()(int i) const {
     if (offset[i + 1] == offset[i]) return;
-    key[offset[i]] = memory_key(after[i]);
+    key[offset[i]] = after[i].key();
     from[offset[i]] = i;
   }
+};
+template <class T>
+struct AccuracyToJudge {
+  T term;
+  StateView s;
+  TAPE_HD Real operator()(int i) const { return term.accuracy_to_judge(s, i); }
+};
+struct SmallerReal {
+  TAPE_HD Real operator()(Real a, Real b) const { return a < b ? a : b; }
 };
 template <class Memory>
 struct Gather {
@@ -110,5 +101,25 @@ inline EffectMemory Objective::remember(const StateView& s) {
     }
   });
   return memory;
+}
+
+inline Real Objective::accuracy_to_judge(const StateView& s) {
+  Real smallest = std::numeric_limits<Real>::infinity();
+  for_each([&]<class T>(std::string_view, Term<T>& term) {
+    if constexpr (requires { term.view.accuracy_to_judge(s, 0); }) {
+      const objective::AccuracyToJudge<T> kernel{term.view, s};
+      smallest = reduce(term.view.elements.size, smallest, kernel, objective::SmallerReal{});
+    }
+  });
+  return smallest;
+}
+
+inline Real Objective::adhesive_energy(const StateView& s) {
+  Real sum = 0;
+  for_each([&]<class T>(std::string_view, Term<T>& term) {
+    if constexpr (Remembers<T>)
+      sum += reduce(term.view.elements.size, EnergySum{}, objective::ElementEnergy<T>{term.view, s}, objective::AddEnergies{}).sum;
+  });
+  return sum;
 }
 }  // namespace tape::TAPE_SIDE

@@ -156,7 +156,7 @@ State load_snapshot(const std::string& file, const World& world) {
     refuse("its arrays do not fit");
   }
   try {
-    check_start(vertex_positions(world, state), world.surface, world.setup.scene.dhat());
+    check_start(vertex_positions(world, state), world.surface, world.setup.scene.dhat(), pairs_out_of_contact(state.memory));
   } catch (const InputError& e) {
     refuse(e.what());
   }

@@ -25,6 +25,16 @@ struct StageReport {
   Real ms = 0;
 };
 
+/// What an adhesive interface carries at the end of a step.
+struct AdhesionReport {
+  Real normal = 0;      ///< [N] sum over pairs of the forces that hold them together
+  Real tangential = 0;  ///< [N] sum over pairs of the magnitudes of the forces against sliding
+  int live = 0;         ///< pairs that adhere
+  /// [m] the part of the first strip's length where it adheres: rest coordinates of the first and the last vertex of a live pair; from > to
+  /// without any. In a peel one of them is the front.
+  Real from = std::numeric_limits<Real>::infinity(), to = -std::numeric_limits<Real>::infinity();
+};
+
 /// Outcome of one step: numbers, not text.
 struct StepReport {
   bool ok = true;
@@ -49,8 +59,10 @@ struct StepReport {
   Real max_strain = 0;                   ///< [1] largest principal membrane strain in magnitude
   std::vector<EffectReport> effects;
   std::vector<StageReport> stages;
-  std::vector<Vec3> grip_force;  ///< [grips] N that the grip exerts on what it holds
-  std::vector<Vec3> body_force;  ///< [bodies] N of contact and grips on the body (driven and dynamic)
+  Real adhesion_work = 0;  ///< [J] change of the energy of what adheres by what was remembered of the step: growth of beta adds
+  std::vector<AdhesionReport> adhesion;  ///< [Scene::adhesives]
+  std::vector<Vec3> grip_force;          ///< [grips] N that the grip exerts on what it holds
+  std::vector<Vec3> body_force;          ///< [bodies] N of contact and grips on the body (driven and dynamic)
   Real wall_ms = 0;
 };
 

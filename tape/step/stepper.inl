@@ -58,6 +58,29 @@ struct Strain {
   StateView s;
   TAPE_HD Real operator()(int i) const { return term.strain(s, i); }
 };
+/// What element i adds to the report of one interface.
+template <class T>
+struct Adheres {
+  T term;
+  StateView s;
+  int interface, turned;   ///< in both orders of its materials
+  Span<const Real> along;  ///< [strip vertices] m, rest coordinate along the strip
+  TAPE_HD AdhesionReport operator()(int i) const {
+    const AdhesiveForce f = term.force(s, i);
+    AdhesionReport out;
+    if (!f.live || (f.interface != interface && f.interface != turned)) return out;
+    out.normal = f.normal, out.tangential = f.tangential, out.live = 1;
+    if (f.vertex < along.size) out.from = out.to = along[f.vertex];
+    return out;
+  }
+};
+struct AddAdhesion {
+  TAPE_HD AdhesionReport operator()(AdhesionReport a, const AdhesionReport& b) const {
+    a.normal += b.normal, a.tangential += b.tangential, a.live += b.live;
+    a.from = std::fmin(a.from, b.from), a.to = std::fmax(a.to, b.to);
+    return a;
+  }
+};
 struct Fill {
   Span<Vec3> out;
   TAPE_HD void operator()(int i) const { out[i].setZero(); }
@@ -84,6 +107,10 @@ class SideStepper final : public Stepper {
     }
     mu_.upload(mu);
     adhesion_.upload(adhesion);
+    std::vector<Real> along;
+    for (int v = 0; v < (world.assembly.strips.empty() ? 0 : world.assembly.strips[0].vertices); ++v)
+      along.push_back(world.assembly.rest[static_cast<std::size_t>(v)].x());
+    along_.upload(along);
     for (Real m : world.assembly.mass) moving_mass_ += m;
     contact_on_ = is_on("barrier");
     begin(state, world.setup.scene.time.dt);
@@ -179,7 +206,7 @@ class SideStepper final : public Stepper {
     begin(next, dt);
     if (newton(next, report)) {
       read_back(next, dt);
-      next.memory = remember(dt);
+      renew_memory(next, dt, report);
       state = std::move(next);
       return true;
     }
@@ -214,7 +241,39 @@ class SideStepper final : public Stepper {
     objective_->set_candidates(search_.candidates());
   }
 
-  /// What adheres at now_ after `dt` [s]: 0 at the start of a run, where pairs in the contact band are as engaged as new ones.
+  /// Brings the memory to the end of a step at now_, and books what that does to the energy.
+  void renew_memory(State& state, Real dt, StepReport& report) {
+    report.adhesion = adhesion();
+    const Real before = objective_->adhesive_energy(view(now_));
+    state.memory = remember(dt);
+    StateView s = view(now_);
+    s.x_start = s.x;
+    objective_->recall(state.memory, s, search_.surface());
+    report.adhesion_work += objective_->adhesive_energy(s) - before;
+  }
+  std::vector<AdhesionReport> adhesion() {
+    std::vector<AdhesionReport> out;
+    const StateView s = view(now_);
+    for (const AdhesivePair& pair : world_.setup.scene.adhesives) {
+      AdhesionReport sum;
+      objective_->for_each([&]<class T>(std::string_view, Term<T>& term) {
+        if constexpr (Remembers<T>) {
+          const int n = world_.surface.materials;
+          const stepping::Adheres<T> kernel{term.view, s, pair.a * n + pair.b, pair.b * n + pair.a, along_.span()};
+          sum = stepping::AddAdhesion{}(sum, reduce(term.view.elements.size, AdhesionReport{}, kernel, stepping::AddAdhesion{}));
+        }
+      });
+      out.push_back(sum);
+    }
+    return out;
+  }
+  /// What adheres at the start of a run: pairs in the contact band are as engaged as new ones.
+  EffectMemory remember_start(const EffectMemory& given) {
+    update_candidates(direction_.span());
+    objective_->recall(given, view(now_), search_.surface());
+    return remember(0);
+  }
+  /// What adheres at now_, `dt` [s] after the start of the step.
   EffectMemory remember(Real dt) {
     StateView s = view(now_);
     s.dt = dt;
@@ -226,10 +285,12 @@ class SideStepper final : public Stepper {
   bool newton(const State& state, StepReport& report) {
     const NewtonParams& params = world_.setup.newton;
     parallel_for(direction_.size(), stepping::Fill{direction_.span()});
+    EffectMemory memory = state.memory;
+    if (state.time == 0) memory = remember_start(memory);
+    search_.set_bonded(pairs_out_of_contact(memory));
     search_.forget();  // what earlier steps found must not change the order of this one's sums
     update_candidates(direction_.span());
-    objective_->recall(state.memory, view(now_), search_.surface());
-    if (state.time == 0) objective_->recall(remember(0), view(now_), search_.surface());
+    objective_->recall(memory, view(now_), search_.surface());
     objective_->begin_step(view(now_));
     {
       const Stopwatch watch(line_search_ms_);
@@ -255,7 +316,7 @@ class SideStepper final : public Stepper {
       const int halvings = report.halvings;
       if (!line_search(slope, report, at_round_off)) return false;
       overshot_ = report.halvings > halvings;
-      if (converged || at_round_off) return true;
+      if (at_round_off || (converged && moved <= objective_->accuracy_to_judge(view(now_)))) return true;
     }
     return fail(report, "Newton's method took " + std::to_string(params.max_newton) + " iterations (solver.max_newton)");
   }
@@ -350,7 +411,7 @@ class SideStepper final : public Stepper {
         const Span<const ContactPair> pairs = search_.candidates();
         report.candidates = pairs.size;
         report.active_pairs = term.count;
-        report.min_gap = smallest_gap(pairs, s.x).gap;
+        report.min_gap = std::fmin(smallest_gap(pairs, s.x).gap, smallest_gap(search_.bonded(), s.x).gap);
       }
       if constexpr (requires { term.view.strain(s, 0); })
         report.max_strain = reduce(term.view.elements.size, 0.0, stepping::Strain<T>{term.view, s}, stepping::Larger{});
@@ -379,7 +440,7 @@ class SideStepper final : public Stepper {
   Configuration start_, now_, trial_;
   Buffer<Vec3> x_tilde_, grip_target_, direction_, right_;
   Buffer<Pose> body_target_;
-  Buffer<Real> grip_stiffness_, mu_;
+  Buffer<Real> grip_stiffness_, mu_, along_;
   Buffer<Adhesion> adhesion_;
   static constexpr Real kPositionRoundOff = 1e-15;
   HessianMode mode_ = HessianMode::exact;       // of the last direction

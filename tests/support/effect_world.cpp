@@ -87,6 +87,7 @@ void EffectWorld::add_grips() {
 
 void EffectWorld::add_pairs() {
   const Real dhat = scene.dhat();
+  int interface = 1;
   const auto add = [&](PairKind kind, const Real(&p)[4][3], Real height, Real xi) {
     const Mat3 R = rotation_exp(random_vector(3));
     const Vec3 shift = random_vector(0.01);
@@ -99,7 +100,7 @@ void EffectWorld::add_pairs() {
     const Real length4 = (at[1] - at[0]).squaredNorm() * (at[3] - at[2]).squaredNorm();
     pairs.push_back({.v = {v[0], v[1], v[2], v[3]},
                      .kind = kind,
-                     .interface = 1,
+                     .interface = interface,
                      .xi = xi,
                      .dhat = dhat,
                      .weight = 4e-6,
@@ -109,6 +110,9 @@ void EffectWorld::add_pairs() {
   };
   for (Real xi : {0.0, 9e-5}) {
     for (Real gap : {0.02, 0.3, 0.9}) {
+      interface = 3;
+      add(PairKind::vertex_triangle, {{0.3, 0.3, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, xi + gap * dhat, xi);  // for bonds
+      interface = 1;
       const Real h = xi + gap * dhat;
       add(PairKind::vertex_triangle, {{0.3, 0.3, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, h, xi);               // face
       add(PairKind::vertex_triangle, {{0.4, 0.02, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, h, xi);              // face, near an edge
@@ -122,7 +126,8 @@ void EffectWorld::add_pairs() {
     }
   }
   mu = {0.5, 0.7, 0.7, 1.0};
-  scene.adhesives = {{0, 1, {AdhesionLaw::per_pair, {{true, true}, {true, true}}, {.cn = 0.675, .ct = 0.5, .beta0 = 0.8}}}};
+  scene.adhesives = {{0, 1, {AdhesionLaw::per_pair, {{true, true}, {true, true}}, {.cn = 0.675, .ct = 0.5, .beta0 = 0.8}, {}}},
+                     {1, 1, {AdhesionLaw::bond, {{true, true}, {true, true}}, {}, {.reach = 1, .floor = 0}}}};
   for (int a : {0, 1})
     for (int b : {0, 1}) adhesion.push_back(scene.adhesion(a, b));
 }
@@ -134,7 +139,7 @@ void EffectWorld::disturb() {
     const bool strip = static_cast<int>(i) < assembly.strips[0].vertices;
     if (strip) x[i] += random_vector(1e-3);
     const Real slip = i / 4 % 2 == 0 ? 2e-5 : 2e-7;  // eps_v dt = 1e-6: every other pair slides
-    x_start[i] = x[i] + random_vector(slip);
+    x_start[i] = x[i] + random_vector(slip);         // bonds are made there and strained by the way to x
     x_tilde[i] = x[i] + random_vector(1e-3);
   }
   for (std::size_t b = 0; b < assembly.bodies.size(); ++b) {

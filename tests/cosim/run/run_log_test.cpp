@@ -53,7 +53,7 @@ class FakeStepper : public Stepper {
   std::function<void(State&, StepReport&)> act_;
 };
 
-RunLog run(const World& world, const std::function<void(State&, StepReport&)>& act, RunOptions options = {}) {
+RunLog run(const World& world, const std::function<void(State&, StepReport&)>& act, const RunOptions& options = {}) {
   FakeStepper stepper(act);
   State state = State::start(world);
   return simulate(world, stepper, state, options);

@@ -166,6 +166,31 @@ script:
   EXPECT_EQ(glue.what.vertices.size(), 14u);
 }
 
+TEST(ReadScene, InterfacesSayWhichFacesStickAndHow) {
+  const tape::Scene scene = read(kStrip + R"(
+bodies:
+  table: {shape: box, size: [1, 1, 0.1], position: [0, 0, -1], material: abs}
+  other: {shape: box, size: [1, 1, 0.1], position: [0, 0, 1], material: abs}
+interfaces:
+  - {between: [table, tape.sticky], law: per_pair, cn: 0.675, ct: 0.5, mu: 0.1}
+  - {between: [tape.sticky, tape], law: per_pair, beta0: 1}
+)");
+  const int tape = scene.strips[0].material, table = scene.bodies[0].material, other = scene.bodies[1].material;
+  const tape::Adhesion to_table = scene.adhesion(tape, table), from_table = scene.adhesion(table, tape), wound = scene.adhesion(tape, tape);
+  EXPECT_EQ(to_table.law, tape::AdhesionLaw::per_pair);
+  EXPECT_EQ(to_table.pair.cn, 0.675);
+  EXPECT_EQ(to_table.pair.ct, 0.5);
+  EXPECT_EQ(scene.mu(tape, table), 0.1);
+  EXPECT_EQ(scene.adhesion(tape, other).law, tape::AdhesionLaw::none) << "a name of a thing does not speak for its material";
+  for (int body_face : {0, 1}) {
+    EXPECT_TRUE(to_table.sticks[1][body_face] && from_table.sticks[body_face][1]);
+    EXPECT_FALSE(to_table.sticks[0][body_face] || from_table.sticks[body_face][0]) << "the backing does not stick";
+  }
+  EXPECT_TRUE(wound.sticks[1][0] && wound.sticks[0][1] && wound.sticks[1][1]);
+  EXPECT_FALSE(wound.sticks[0][0]) << "backing to backing";
+  EXPECT_EQ(wound.pair.beta0, 1);
+}
+
 TEST(ReadScene, RowsAreCountedAlikeOnEveryPattern) {
   for (const char* pattern : {"same", "alternating", "crossed", "irregular"}) {
     const tape::Scene scene =

@@ -14,6 +14,13 @@ struct Value {
 struct Plus {
   Real operator()(Real a, Real b) const { return a + b; }
 };
+struct IsOne {
+  int one;
+  bool operator()(int i) const { return i == one; }
+};
+struct Or {
+  bool operator()(bool a, bool b) const { return a || b; }
+};
 struct Square {
   Span<Real> values;
   void operator()(int i) const { values[i] *= values[i]; }
@@ -38,6 +45,11 @@ TEST(Parallel, ASumHasTheSameBitsForAnyNumberOfThreads) {
   set_threads(0);
 }
 
+TEST(Parallel, ReducedFlagsAreNotLostBetweenThreads) {  // chunks that write bits of one byte at a time would lose some
+  set_threads(8);
+  for (int repeat = 0; repeat < 2000; ++repeat) EXPECT_TRUE(reduce(64 * 256, false, IsOne{repeat * 8}, Or{})) << repeat;
+  set_threads(0);
+}
 TEST(Parallel, ShuffledOrderVisitsEveryIterationOnce) {
   const std::vector<Real> host = random_reals(1000);
   Buffer<Real> values(host);

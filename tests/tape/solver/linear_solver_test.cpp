@@ -242,7 +242,7 @@ TEST(LinearSolver, AutoTakesTheBandForAStripAndCholeskyWithoutOneAndSaysSo) {
 
 TEST(LinearSolver, ASettingOutOfRangeIsRefusedByName) {
   try {
-    LinearSolver({.pcg_tol = 0});
+    const LinearSolver refused({.pcg_tol = 0});
     ADD_FAILURE() << "accepted pcg_tol = 0";
   } catch (const SettingsError& e) {
     EXPECT_EQ(e.path, "solver.pcg_tol");

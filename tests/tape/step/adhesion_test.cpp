@@ -1,0 +1,98 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <numbers>
+
+#include "tape/core/execution.hpp"
+#include "tape/math/rotation.hpp"
+#include "tape/model/primitives.hpp"
+#include "tests/support/simulation.hpp"
+using namespace tape;
+
+namespace {
+constexpr bool kTrue[2][2] = {{false, false}, {true, true}};
+/// A strip of 30 mm that hangs by its sticky face from a ceiling, at the gap where cohesion rests.
+Setup ceiling(AdhesionLaw law) {
+  const Film film = test::vinyl();
+  const Real gap = film.xi + 0.6 * film.dhat;
+  Strip strip = test::flat_strip(0.03, 3, Vec3(-0.015, 0, -gap));
+  strip.pose.rotation = rotation_exp(Vec3(std::numbers::pi, 0, 0));  // backing down
+  Setup setup = test::strip_setup(strip);
+  test::add_body(setup, "ceiling", box_mesh(Vec3(0.06, 0.04, 0.01), {12, 8, 1}), Motion::fixed, Vec3(0, 0, 0.005)).material = 1;
+  setup.scene.materials.push_back({"plaster", 0.5});
+  Adhesion adhesion{law, {}, {.cn = 0.675, .ct = 0.675, .beta0 = 1}, {}};
+  std::copy(&kTrue[0][0], &kTrue[0][0] + 4, &adhesion.sticks[0][0]);
+  setup.scene.adhesives = {{0, 1, adhesion}};
+  return setup;
+}
+Real lowest(const test::Simulation& s) {
+  Real z = 0;
+  for (const Vec3& p : s.state().x) z = std::min(z, p.z());
+  return z;
+}
+int remembered(const State& state) {
+  EffectMemory memory = state.memory;
+  int n = 0;
+  for_each_memory(memory, [&](const auto& pairs) { n += static_cast<int>(pairs.size()); });
+  return n;
+}
+}  // namespace
+
+TEST(Adhesion, HoldsAStripUnderACeilingAndWithoutItFalls) {
+  for (AdhesionLaw law : {AdhesionLaw::per_pair, AdhesionLaw::bond}) {
+    test::Simulation s(ceiling(law));
+    s.run_to(0.3);
+    EXPECT_TRUE(s.broken.empty()) << s.broken.front();
+    EXPECT_GT(remembered(s.state()), 30);
+    EXPECT_GT(lowest(s), -3.2e-4) << to_text(law);
+    EXPECT_GT(s.report().adhesion[0].live, 30);
+    const Real weight = 1300 * 1.8e-4 * 0.019 * 0.03 * 9.81;  // [N]
+    EXPECT_LT(s.state().v[0].norm(), 1e-3);
+    EXPECT_GT(s.report().adhesion[0].normal, 0.99 * weight) << "what holds it carries at least its weight";
+  }
+  test::Simulation free(ceiling(AdhesionLaw::none));
+  free.run_to(0.3);
+  EXPECT_EQ(remembered(free.state()), 0);
+  EXPECT_LT(lowest(free), -0.4) << "g t^2/2 = 0.44 m";
+}
+TEST(Adhesion, TheBackingDoesNotStick) {
+  tape::Setup setup = ceiling(AdhesionLaw::per_pair);
+  setup.scene.strips[0].pose.rotation = Mat3::Identity();
+  test::Simulation s(setup);
+  s.run_to(0.1);
+  EXPECT_EQ(remembered(s.state()), 0);
+  EXPECT_LT(lowest(s), -0.04);
+}
+TEST(Adhesion, SavedAndResumedItGoesOnToTheBit) {
+  for (AdhesionLaw law : {AdhesionLaw::per_pair, AdhesionLaw::bond}) {
+    const tape::Setup setup = ceiling(law);
+    test::Simulation through(setup), first(setup), second(setup);
+    const std::string file = (std::filesystem::temp_directory_path() / "tape_adhesion_test.h5").string();
+    for (int k = 0; k < 3; ++k) through.step(), first.step();
+    save_snapshot(file, first.world(), first.state());
+    second.state() = load_snapshot(file, second.world());
+    std::filesystem::remove(file);
+    EXPECT_EQ(second.state().hash(), first.state().hash());
+    for (int k = 0; k < 5; ++k) through.step(), second.step();
+    EXPECT_EQ(second.state().hash(), through.state().hash());
+    EffectMemory& memory = second.state().memory;
+    for_each_memory(memory, [](auto& pairs) {
+      if (!pairs.empty()) pairs.pop_back();
+    });
+    EXPECT_NE(second.state().hash(), through.state().hash()) << "the hash sees what is remembered";
+  }
+}
+TEST(Adhesion, HasTheSameBitsForAnyNumberOfThreads) {
+  for (AdhesionLaw law : {AdhesionLaw::per_pair, AdhesionLaw::bond}) {
+    std::vector<std::string> hashes;
+    for (int threads : {1, 2, 8}) {
+      set_threads(threads);
+      test::Simulation s(ceiling(law));
+      for (int k = 0; k < 5; ++k) s.step();
+      hashes.push_back(s.state().hash());
+    }
+    set_threads(0);
+    EXPECT_EQ(hashes[0], hashes[1]);
+    EXPECT_EQ(hashes[0], hashes[2]);
+  }
+}
