@@ -18,7 +18,7 @@ struct Loaded {
   BlockMatrix matrix;
   Buffer<std::uint64_t> fixed_keys, contact_keys;
   Buffer<Mat3> fixed_values, contact_values;
-  Buffer<Vec3> b, x;
+  Buffer<Vec3> points, b, x;
   HostBlocks host;
   explicit Loaded(StripSystem s)
       : system(std::move(s)),
@@ -26,6 +26,7 @@ struct Loaded {
         contact_keys(system.contact.keys),
         fixed_values(system.fixed.values),
         contact_values(system.contact.values),
+        points(system.x),
         b(system.load()) {
     matrix.set_fixed_pattern(system.n, fixed_keys.span());
     matrix.set_contact_pattern(contact_keys.span());
@@ -116,7 +117,7 @@ void solve(benchmark::State& state, LinearKind kind, bool folded) {
   Loaded a = loaded(state, folded);
   LinearSolver solver({.linear = kind}, a.system.layout);
   LinearReport last;
-  for (auto _ : state) last = solver.solve(a.matrix, a.b.span(), a.x.span());
+  for (auto _ : state) last = solver.solve(a.matrix, a.points.span(), a.b.span(), a.x.span());
   const LinearCosts costs = linear_costs(a.host, a.system.layout);
   report(state, a.matrix.blocks());
   state.counters["iterations"] = last.iterations;

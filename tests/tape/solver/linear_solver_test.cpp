@@ -11,12 +11,12 @@ using namespace tape::on_cpu;
 using test::StripSystem;
 
 namespace {
-constexpr LinearKind kKinds[] = {LinearKind::cholesky, LinearKind::pcg_jacobi, LinearKind::pcg_strip};
+constexpr LinearKind kKinds[] = {LinearKind::cholesky, LinearKind::pcg_jacobi, LinearKind::pcg_strip, LinearKind::pcg_two_level};
 
 struct Loaded {
   BlockMatrix matrix;
-  Buffer<Vec3> b, x;
-  explicit Loaded(const StripSystem& s) : b(s.load()) {
+  Buffer<Vec3> points, b, x;
+  explicit Loaded(const StripSystem& s) : points(s.x), b(s.load()) {
     Buffer<std::uint64_t> fixed_keys(s.fixed.keys), contact_keys(s.contact.keys);
     matrix.set_fixed_pattern(s.n, fixed_keys.span());
     matrix.set_contact_pattern(contact_keys.span());
@@ -25,7 +25,7 @@ struct Loaded {
     matrix.accumulate_contact(contact_values.span());
     x.resize(s.n);
   }
-  LinearReport solve(LinearSolver& solver) { return solver.solve(matrix, b.span(), x.span()); }
+  LinearReport solve(LinearSolver& solver) { return solver.solve(matrix, points.span(), b.span(), x.span()); }
 };
 
 LinearReport solve(const StripSystem& s, LinearParams params) {
