@@ -5,7 +5,7 @@
 
 namespace tape {
 /// Rows of a strip that a group of the coarse space takes together (README: measured for 4, 5 and 6).
-inline constexpr int kRowsPerGroup = 5;
+inline constexpr int kRowsPerGroup = 4;
 
 /// Consecutive blocks of unknowns that share the 6 modes of a rigid motion.
 struct RigidGroup {

@@ -129,7 +129,7 @@ TEST(LinearSolver, TheStripPreconditionerNeedsAThirdOfTheIterationsOfBlockJacobi
 
 TEST(LinearSolver, ATighterToleranceTakesMoreIterations) {
   const StripSystem s = folded(100, 1e5);
-  for (LinearKind kind : {LinearKind::pcg_jacobi, LinearKind::pcg_strip}) {
+  for (LinearKind kind : {LinearKind::pcg_jacobi, LinearKind::pcg_strip, LinearKind::pcg_two_level}) {
     int last = 0;
     for (Real tolerance : {1e-2, 1e-4, 1e-6}) {
       const LinearReport report = solve(s, {.linear = kind, .pcg_tol = tolerance});
@@ -229,8 +229,11 @@ TEST(LinearSolver, ItHasTheSameBitsForAnyThreadsAnyOrderAndAnyPast) {
     }
 }
 
-TEST(LinearSolver, AutoTakesTheBandForAStripAndCholeskyWithoutOneAndSaysSo) {
+TEST(LinearSolver, AutoTakesTheBandForAStripRigidMotionsForARollAndCholeskyWithoutAStripAndSaysSo) {
   EXPECT_EQ(solve(strip(400), {}).solver, "pcg_strip");
+  StripSystem rolled;
+  rolled.add_roll(4, 10);
+  EXPECT_EQ(solve(rolled, {}).solver, "pcg_two_level");
   StripSystem bodies;
   for (int i = 0; i < 4; ++i) bodies.add_body(Vec3(i, 0, 0), 1);
   EXPECT_EQ(solve(bodies, {}).solver, "cholesky_simplicial");
@@ -238,6 +241,19 @@ TEST(LinearSolver, AutoTakesTheBandForAStripAndCholeskyWithoutOneAndSaysSo) {
   unknown.layout.strips.clear();
   EXPECT_EQ(solve(unknown, {}).solver, "cholesky_simplicial");
   EXPECT_EQ(solve(strip(20), {.linear = LinearKind::pcg_jacobi}).solver, "pcg_jacobi");
+}
+
+TEST(LinearSolver, OnlyTheSideWithHostMemoryOffersTheStripPreconditioner) {
+  EXPECT_EQ(available_solvers(),
+            (std::vector{LinearKind::cholesky, LinearKind::pcg_jacobi, LinearKind::pcg_two_level, LinearKind::pcg_strip}));
+  for (LinearKind kind : available_solvers()) {
+    check({.linear = kind}, true);
+    if (kind == LinearKind::pcg_strip) {
+      EXPECT_THROW(check({.linear = kind}, false), SettingsError);
+    } else {
+      check({.linear = kind}, false);
+    }
+  }
 }
 
 TEST(LinearSolver, ASettingOutOfRangeIsRefusedByName) {
