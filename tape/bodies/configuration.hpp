@@ -46,6 +46,14 @@ struct MoveVertex {
     to[v] = o.body < 0 ? Vec3(from[v] + step * direction[o.block]) : apply(body[o.body], local[v]);
   }
 };
+struct BlockPoints {
+  Span<const Vec3> x;
+  Span<const VertexOwner> owner;
+  Span<Vec3> points;
+  TAPE_HD void operator()(int v) const {
+    if (owner[v].block >= 0 && owner[v].body < 0) points[owner[v].block] = x[v];
+  }
+};
 }  // namespace coordinates
 
 /// What moves the vertices: constant for a run.
@@ -64,6 +72,10 @@ class Coordinates {
                  coordinates::MoveBody{from.body.span(), direction, body_block_.span(), step, to.body.span(), to.body_position.span()});
     parallel_for(from.x.size(),
                  coordinates::MoveVertex{from.x.span(), direction, owner_.span(), local_.span(), to.body.span(), step, to.x.span()});
+  }
+  /// points[block] = position [m] of the vertex that is this block. Blocks of bodies keep what `points` [blocks] has.
+  void block_points(const Configuration& at, Span<Vec3> points) const {
+    parallel_for(at.x.size(), coordinates::BlockPoints{at.x.span(), owner_.span(), points});
   }
   PathView paths(const Configuration& from, Span<const Vec3> direction) const {
     return {from.x.span(), owner_.span(), direction, from.body_position.span()};

@@ -50,11 +50,13 @@ struct RowsView {
     }
     return sum;
   }
+  TAPE_HD Mat3 entry(int e) const {
+    const Mat3& m = values[entries[e].ref >> 1];
+    return entries[e].ref & 1 ? Mat3(m.transpose()) : m;
+  }
   TAPE_HD Mat3 block(int i, int j) const {
-    for (int e = begin[i]; e < begin[i + 1]; ++e) {
-      const Mat3& m = values[entries[e].ref >> 1];
-      if (entries[e].col == j) return entries[e].ref & 1 ? Mat3(m.transpose()) : m;
-    }
+    for (int e = begin[i]; e < begin[i + 1]; ++e)
+      if (entries[e].col == j) return entry(e);
     return Mat3::Zero();
   }
 };

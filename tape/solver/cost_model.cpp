@@ -1,7 +1,10 @@
 #include "tape/solver/cost_model.hpp"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
+
+#include "tape/solver/rigid_groups.hpp"
 
 namespace tape {
 namespace {
@@ -13,6 +16,8 @@ constexpr Real kAnalysisPerBlock = 1e-6;    // [s] ordering and symbolic analysi
 constexpr Real kFactorPerEntry = 40e-9;     // [s] Cholesky per entry of the envelope: assembly and small supernodes
 constexpr Real kDenseRate = 60e9;           // [flop/s] Cholesky per flop of the envelope, of which dissection needs about half
 constexpr Real kJacobiIterations = 800;     // typical of strips and rolls
+constexpr Real kTwoLevelIterations = 60;    // of scenes with strips, wraps and coils: 47 to 61
+constexpr Real kCoarsePerBlock = 100e-9;    // [s] P' A P per stored block of A
 constexpr Real kExactIterations = 2;        // strip preconditioner, nothing dropped
 constexpr Real kDropIterations = 8;         // ... some blocks dropped: so many,
 constexpr Real kDropShareIterations = 500;  // ... and so many times the dropped share of all blocks
@@ -22,23 +27,42 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 struct Graph {
   std::vector<int> begin, to;
 };
+/// @param for_edges  calls its argument with both directions of each edge, in the same order each time
+template <class ForEdges>
+Graph make_graph(int n, const ForEdges& for_edges) {
+  Graph g;
+  g.begin.assign(at(n) + 1, 0);
+  for_edges([&](int i, int) { ++g.begin[at(i) + 1]; });
+  for (int i = 0; i < n; ++i) g.begin[at(i) + 1] += g.begin[at(i)];
+  g.to.resize(at(g.begin[at(n)]));
+  std::vector<int> next(g.begin.begin(), g.begin.end() - 1);
+  for_edges([&](int i, int j) { g.to[at(next[at(i)]++)] = j; });
+  return g;
+}
+
 /// All blocks but those of bodies as a graph; bodies couple to many and are eliminated last.
 Graph graph_without_bodies(const HostBlocks& a, const SystemLayout& layout) {
   std::vector<bool> body(at(a.n), false);
   for (int b : layout.body_blocks) body[at(b)] = body[at(b + 1)] = true;
-  Graph g;
-  g.begin.assign(at(a.n) + 1, 0);
-  const auto for_edges = [&](auto&& f) {
+  return make_graph(a.n, [&](auto&& f) {
     for (int i = 0; i < a.n; ++i)
       for (int k = a.row_begin[at(i)]; k < a.row_begin[at(i) + 1]; ++k)
         if (const int j = a.col[at(k)]; j != i && !body[at(i)] && !body[at(j)]) f(i, j), f(j, i);
-  };
-  for_edges([&](int i, int) { ++g.begin[at(i) + 1]; });
-  for (int i = 0; i < a.n; ++i) g.begin[at(i) + 1] += g.begin[at(i)];
-  g.to.resize(at(g.begin[at(a.n)]));
-  std::vector<int> next(g.begin.begin(), g.begin.end() - 1);
-  for_edges([&](int i, int j) { g.to[at(next[at(i)]++)] = j; });
-  return g;
+  });
+}
+
+/// The same of the coarse space: its groups.
+Graph graph_of_groups(const HostBlocks& a, const std::vector<RigidGroup>& groups) {
+  const std::vector<int> group = group_of_blocks(groups, a.n);
+  return make_graph(static_cast<int>(groups.size()), [&](auto&& f) {
+    std::vector<int> last(groups.size(), -1);  // row of groups that met this one last
+    for (int i = 0; i < a.n; ++i) {
+      const int g = group[at(i)];
+      if (g < 0 || groups[at(g)].body) continue;
+      for (int k = a.row_begin[at(i)]; k < a.row_begin[at(i) + 1]; ++k)
+        if (const int h = group[at(a.col[at(k)])]; h > g && !groups[at(h)].body && last[at(h)] != g) last[at(h)] = g, f(g, h), f(h, g);
+    }
+  });
 }
 
 /// Breadth-first order of the component of `root`, appended to `order`; place[i] is set for each.
@@ -54,9 +78,13 @@ void visit(const Graph& g, int root, std::vector<int>& order, std::vector<int>& 
       }
 }
 
-/// Time of a Cholesky factorisation inside the envelope of the Cuthill-McKee order: near that of nested dissection on graphs
-/// that are long and thin, as strips, folds and rolls are.
-Real envelope_seconds(const Graph& g) {
+struct Envelope {
+  Real seconds = 0, entries = 0;
+};
+/// Cholesky factorisation inside the envelope of the Cuthill-McKee order: near that of nested dissection on graphs that are long
+/// and thin, as strips, folds and rolls are.
+/// @param unknowns  of each node
+Envelope envelope(const Graph& g, int unknowns) {
   const std::size_t n = g.begin.size() - 1;
   std::vector<int> order, place(n, -1);
   for (std::size_t i = 0; i < n; ++i) {
@@ -68,14 +96,15 @@ Real envelope_seconds(const Graph& g) {
     order.resize(first);
     visit(g, far, order, place);
   }
-  Real seconds = 0;
+  Envelope e;
   for (std::size_t i = 0; i < n; ++i) {
     int reach = 0;
-    for (int e = g.begin[i]; e < g.begin[i + 1]; ++e) reach = std::max(reach, place[i] - place[at(g.to[at(e)])]);
-    const Real width = 3.0 * reach + 2;
-    seconds += 3 * width * (kFactorPerEntry + width / kDenseRate);
+    for (int k = g.begin[i]; k < g.begin[i + 1]; ++k) reach = std::max(reach, place[i] - place[at(g.to[at(k)])]);
+    const Real width = unknowns * reach + unknowns - 1;
+    e.entries += unknowns * width;
+    e.seconds += unknowns * width * (kFactorPerEntry + width / kDenseRate);
   }
-  return seconds;
+  return e;
 }
 
 struct Sizes {
@@ -115,19 +144,28 @@ LinearCosts linear_costs(const HostBlocks& a, const SystemLayout& layout) {
   const auto dense_border = [&](Real m) { return s.unknowns * m * m + m * m * m / 3; };  // [flop] Schur complement and its factor
   const Real sweep = 4 * (s.band_entries + s.unknowns * s.border + s.border * s.border);
   LinearCosts costs;
-  costs.cholesky = kAnalysisPerBlock * blocks + envelope_seconds(graph_without_bodies(a, layout)) +
+  costs.cholesky = kAnalysisPerBlock * blocks + envelope(graph_without_bodies(a, layout), 3).seconds +
                    dense_border(6.0 * static_cast<Real>(layout.body_blocks.size())) / kBorderRate;
   costs.pcg_jacobi = kJacobiIterations * (multiply + 18.0 * a.n) / kStreamRate;
   const Real iterations = s.dropped > 0 ? kDropIterations + kDropShareIterations * s.dropped / blocks : kExactIterations;
   costs.pcg_strip = s.band_flops / kBandRate + (2 * s.band_entries * s.border + dense_border(s.border)) / kBorderRate +
                     iterations * (multiply + sweep) / kStreamRate;
+  const std::vector<RigidGroup> groups = rigid_groups(layout);
+  const Real coarse_border = 6.0 * static_cast<Real>(layout.body_blocks.size()), coarse_unknowns = 6.0 * static_cast<Real>(groups.size());
+  const Envelope coarse = envelope(graph_of_groups(a, groups), 6);
+  const Real coarse_solve = 4 * (coarse.entries + coarse_unknowns * coarse_border);
+  costs.pcg_two_level = kCoarsePerBlock * blocks + coarse.seconds + coarse_unknowns * coarse_border * coarse_border / kBorderRate +
+                        kTwoLevelIterations * (multiply + 66.0 * a.n + coarse_solve) / kStreamRate;
   return costs;
 }
 
 LinearKind choose(const HostBlocks& pattern, const SystemLayout& layout, bool strip_available) {
   const LinearCosts costs = linear_costs(pattern, layout);
-  const bool strip = strip_available && !layout.strips.empty();
-  if (strip && costs.pcg_strip <= std::min(costs.cholesky, costs.pcg_jacobi)) return LinearKind::pcg_strip;
-  return costs.cholesky <= costs.pcg_jacobi ? LinearKind::cholesky : LinearKind::pcg_jacobi;
+  std::pair best(costs.cholesky, LinearKind::cholesky);
+  best = std::min(best, {costs.pcg_jacobi, LinearKind::pcg_jacobi});
+  if (layout.strips.empty()) return best.second;
+  best = std::min(best, {costs.pcg_two_level, LinearKind::pcg_two_level});
+  if (strip_available) best = std::min(best, {costs.pcg_strip, LinearKind::pcg_strip});
+  return best.second;
 }
 }  // namespace tape

@@ -5,7 +5,7 @@
 namespace tape {
 /// Predicted cost of one solve with each solver [s], from sizes alone (README: cost model).
 struct LinearCosts {
-  Real cholesky = 0, pcg_jacobi = 0, pcg_strip = 0;
+  Real cholesky = 0, pcg_jacobi = 0, pcg_strip = 0, pcg_two_level = 0;
 };
 LinearCosts linear_costs(const HostBlocks& pattern, const SystemLayout& layout);
 

@@ -2,3 +2,4 @@
 #include "tape/solver/linear_solver.inl"
 #include "tape/solver/pcg.inl"
 #include "tape/solver/preconditioner.inl"
+#include "tape/solver/two_level.inl"

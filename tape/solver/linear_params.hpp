@@ -7,8 +7,10 @@
 #include "tape/core/settings.hpp"
 
 namespace tape {
-enum class LinearKind { automatic, cholesky, pcg_jacobi, pcg_strip };
-constexpr auto enum_names(LinearKind) { return std::array<std::string_view, 4>{"auto", "cholesky", "pcg_jacobi", "pcg_strip"}; }
+enum class LinearKind { automatic, cholesky, pcg_jacobi, pcg_strip, pcg_two_level };
+constexpr auto enum_names(LinearKind) {
+  return std::array<std::string_view, 5>{"auto", "cholesky", "pcg_jacobi", "pcg_strip", "pcg_two_level"};
+}
 
 /// How A x = b is solved; part of the scene's `solver`.
 struct LinearParams {
@@ -41,7 +43,7 @@ struct SystemLayout {
 
 /// Outcome of one linear solve.
 struct LinearReport {
-  std::string solver;          ///< "cholesky_simplicial", "cholesky_supernodal", "pcg_jacobi" or "pcg_strip"
+  std::string solver;          ///< "cholesky_simplicial", "cholesky_supernodal", or the name of the LinearKind
   int iterations = 0;          ///< of PCG; 0 for Cholesky
   Real relative_residual = 0;  ///< |b - A x| / |b|
   Real error_estimate = 0;     ///< PCG: estimate of ||x* - x||_A / ||x*||_A

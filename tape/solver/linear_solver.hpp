@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -20,13 +21,15 @@ class LinearSolver {
   /// @throws SettingsError for a value out of range or a solver that this side does not offer
   explicit LinearSolver(LinearParams params, SystemLayout layout = {});
   void set_layout(SystemLayout layout);
-  /// @param b, x  [n], memory of this side. When the report says `negative_curvature`, x is not to be used.
-  LinearReport solve(const BlockMatrix& a, Span<const Vec3> b, Span<Vec3> x);
+  /// @param points  [n] m, position of each block of a strip; other entries are not read. Memory of this side, as b and x
+  /// @param b, x    [n]; when the report says `negative_curvature`, x is not to be used
+  LinearReport solve(const BlockMatrix& a, Span<const Vec3> points, Span<const Vec3> b, Span<Vec3> x);
 
  private:
   LinearKind kind(const BlockMatrix& a);
   LinearReport solve_cholesky(const BlockMatrix& a, Span<const Vec3> b, Span<Vec3> x);
-  LinearReport solve_pcg(const BlockMatrix& a, Span<const Vec3> b, Span<Vec3> x, LinearKind kind);
+  LinearReport solve_pcg(const BlockMatrix& a, Span<const Vec3> points, Span<const Vec3> b, Span<Vec3> x, LinearKind kind);
+  Preconditioner& preconditioner(LinearKind kind);
 
   LinearParams params_;
   SystemLayout layout_;
@@ -34,7 +37,7 @@ class LinearSolver {
   LinearKind chosen_ = LinearKind::automatic;
   HostBlocks host_;
   std::optional<Cholesky> cholesky_;
-  std::unique_ptr<Preconditioner> jacobi_, strip_;
+  std::map<LinearKind, std::unique_ptr<Preconditioner>> preconditioners_;
   Pcg pcg_;
   Buffer<Vec3> staging_;
 };

@@ -3,6 +3,7 @@
 
 #include "tape/solver/cost_model.hpp"
 #include "tape/solver/linear_solver.hpp"
+#include "tape/solver/two_level.hpp"
 
 namespace tape::TAPE_SIDE {
 namespace linear_solver {
@@ -14,7 +15,7 @@ struct Copy {
 }  // namespace linear_solver
 
 std::vector<LinearKind> available_solvers() {
-  std::vector<LinearKind> kinds{LinearKind::cholesky, LinearKind::pcg_jacobi};
+  std::vector<LinearKind> kinds{LinearKind::cholesky, LinearKind::pcg_jacobi, LinearKind::pcg_two_level};
   if (kHostMemory) kinds.push_back(LinearKind::pcg_strip);
   return kinds;
 }
@@ -27,8 +28,7 @@ LinearSolver::LinearSolver(LinearParams params, SystemLayout layout) : params_(p
 void LinearSolver::set_layout(SystemLayout layout) {
   layout_ = std::move(layout);
   chosen_for_ = 0;
-  jacobi_.reset();
-  strip_.reset();
+  preconditioners_.clear();
 }
 
 LinearKind LinearSolver::kind(const BlockMatrix& a) {
@@ -41,11 +41,11 @@ LinearKind LinearSolver::kind(const BlockMatrix& a) {
   return chosen_;
 }
 
-LinearReport LinearSolver::solve(const BlockMatrix& a, Span<const Vec3> b, Span<Vec3> x) {
+LinearReport LinearSolver::solve(const BlockMatrix& a, Span<const Vec3> points, Span<const Vec3> b, Span<Vec3> x) {
   TAPE_CHECK(b.size == a.size() && x.size == a.size());
   if (a.size() == 0) return {.solver = "none", .converged = true};
   const LinearKind which = kind(a);
-  LinearReport report = which == LinearKind::cholesky ? solve_cholesky(a, b, x) : solve_pcg(a, b, x, which);
+  LinearReport report = which == LinearKind::cholesky ? solve_cholesky(a, b, x) : solve_pcg(a, points, b, x, which);
   if (!report.negative_curvature) {
     report.relative_residual = relative_residual(a, b, x);
     if (!std::isfinite(report.relative_residual)) report.converged = false;
@@ -71,14 +71,24 @@ LinearReport LinearSolver::solve_cholesky(const BlockMatrix& a, Span<const Vec3>
   return report;
 }
 
-LinearReport LinearSolver::solve_pcg(const BlockMatrix& a, Span<const Vec3> b, Span<Vec3> x, LinearKind which) {
-  const bool strip = which == LinearKind::pcg_strip;
-  std::unique_ptr<Preconditioner>& m = strip ? strip_ : jacobi_;
-  if (!m && strip) m = std::make_unique<StripPreconditioner>(layout_);
-  if (!m) m = std::make_unique<BlockJacobi>(layout_);
+Preconditioner& LinearSolver::preconditioner(LinearKind which) {
+  std::unique_ptr<Preconditioner>& m = preconditioners_[which];
+  if (m) return *m;
+  if (which == LinearKind::pcg_strip) {
+    m = std::make_unique<StripPreconditioner>(layout_);
+  } else if (which == LinearKind::pcg_two_level) {
+    m = std::make_unique<TwoLevel>(layout_);
+  } else {
+    m = std::make_unique<BlockJacobi>(layout_);
+  }
+  return *m;
+}
+
+LinearReport LinearSolver::solve_pcg(const BlockMatrix& a, Span<const Vec3> points, Span<const Vec3> b, Span<Vec3> x, LinearKind which) {
+  Preconditioner& m = preconditioner(which);
   LinearReport report;
-  if (m->build(a)) {
-    report = pcg_.solve(a, b, x, *m, params_.pcg_tol, params_.pcg_iterations);
+  if (m.build(a, points)) {
+    report = pcg_.solve(a, b, x, m, params_.pcg_tol, params_.pcg_iterations);
   } else {
     report.negative_curvature = true;
   }

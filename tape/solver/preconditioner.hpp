@@ -9,8 +9,9 @@ namespace tape::TAPE_SIDE {
 class Preconditioner {
  public:
   virtual ~Preconditioner() = default;
+  /// @param points  [n] m, position of each block of a strip; other entries are not read
   /// @return false when A is seen not to be positive definite
-  virtual bool build(const BlockMatrix& a) = 0;
+  virtual bool build(const BlockMatrix& a, Span<const Vec3> points) = 0;
   virtual void apply(Span<const Vec3> r, Span<Vec3> z) = 0;  ///< [n], memory of this side
   virtual int dropped() const { return 0; }                  ///< blocks of A that M lacks and the layout asked for
 };
@@ -19,7 +20,7 @@ class Preconditioner {
 class BlockJacobi : public Preconditioner {
  public:
   explicit BlockJacobi(const SystemLayout& layout) : bodies_(layout.body_blocks) {}
-  bool build(const BlockMatrix& a) override;
+  bool build(const BlockMatrix& a, Span<const Vec3>) override;
   void apply(Span<const Vec3> r, Span<Vec3> z) override;
 
  private:
@@ -33,7 +34,7 @@ class BlockJacobi : public Preconditioner {
 class StripPreconditioner : public Preconditioner {
  public:
   explicit StripPreconditioner(const SystemLayout& layout) : factor_(layout) {}
-  bool build(const BlockMatrix& a) override;
+  bool build(const BlockMatrix& a, Span<const Vec3>) override;
   void apply(Span<const Vec3> r, Span<Vec3> z) override { factor_.solve(r, z); }
   int dropped() const override { return factor_.dropped(); }
 

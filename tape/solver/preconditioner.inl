@@ -42,7 +42,7 @@ struct Apply {
 };
 }  // namespace block_jacobi
 
-bool BlockJacobi::build(const BlockMatrix& a) {
+bool BlockJacobi::build(const BlockMatrix& a, Span<const Vec3>) {
   if (partner_.size() != a.size()) {
     std::vector<int> partner(static_cast<std::size_t>(a.size()), -1);
     for (int b : bodies_) {
@@ -62,7 +62,7 @@ void BlockJacobi::apply(Span<const Vec3> r, Span<Vec3> z) {
   parallel_for(r.size, block_jacobi::Apply{partner_.span(), diagonal_.span(), coupling_.span(), r, z});
 }
 
-bool StripPreconditioner::build(const BlockMatrix& a) {
+bool StripPreconditioner::build(const BlockMatrix& a, Span<const Vec3>) {
   a.download(host_);
   return factor_.factor(host_);
 }

@@ -119,6 +119,7 @@ class SideStepper final : public Stepper {
     objective_.emplace(world.setup.scene, world.setup.effects, world.assembly, on, view(now_));
     direction_.resize(coordinates_.blocks());
     right_.resize(coordinates_.blocks());
+    points_.resize(coordinates_.blocks());
   }
 
   StepReport step(State& state) override {
@@ -338,7 +339,8 @@ class SideStepper final : public Stepper {
         parallel_for(right_.size(), stepping::Negate{objective_->gradient(), right_.span()});
       }
       const Stopwatch watch(linear_ms_);
-      const LinearReport solved = linear_.solve(objective_->matrix(), right_.span(), direction_.span());
+      coordinates_.block_points(now_, points_.span());
+      const LinearReport solved = linear_.solve(objective_->matrix(), points_.span(), right_.span(), direction_.span());
       report.linear_solver = solved.solver;
       report.linear_iterations += solved.iterations;
       if (!solved.negative_curvature) {
@@ -438,7 +440,7 @@ class SideStepper final : public Stepper {
   LinearSolver linear_;
   std::optional<Objective> objective_;
   Configuration start_, now_, trial_;
-  Buffer<Vec3> x_tilde_, grip_target_, direction_, right_;
+  Buffer<Vec3> x_tilde_, grip_target_, direction_, right_, points_;
   Buffer<Pose> body_target_;
   Buffer<Real> grip_stiffness_, mu_, along_;
   Buffer<Adhesion> adhesion_;

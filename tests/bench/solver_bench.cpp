@@ -4,6 +4,7 @@
 #include "tape/solver/cholesky.hpp"
 #include "tape/solver/cost_model.hpp"
 #include "tape/solver/linear_solver.hpp"
+#include "tape/solver/two_level.hpp"
 #include "tests/support/strip_system.hpp"
 
 /// Cost of the linear part for strips of `rows` rows of 7 vertices: the constants of the cost model (tape/solver/README.md) come
@@ -18,7 +19,7 @@ struct Loaded {
   BlockMatrix matrix;
   Buffer<std::uint64_t> fixed_keys, contact_keys;
   Buffer<Mat3> fixed_values, contact_values;
-  Buffer<Vec3> b, x;
+  Buffer<Vec3> points, b, x;
   HostBlocks host;
   explicit Loaded(StripSystem s)
       : system(std::move(s)),
@@ -26,6 +27,7 @@ struct Loaded {
         contact_keys(system.contact.keys),
         fixed_values(system.fixed.values),
         contact_values(system.contact.values),
+        points(system.x),
         b(system.load()) {
     matrix.set_fixed_pattern(system.n, fixed_keys.span());
     matrix.set_contact_pattern(contact_keys.span());
@@ -35,22 +37,32 @@ struct Loaded {
     x.resize(system.n);
   }
 };
-StripSystem strip(int rows, bool folded) {
+/// What `range(0)` counts: rows of a strip, or turns of a roll.
+enum class Shape { strip, fold, light_strip, light_fold, light_roll };
+/// Light ones have the ratios of mass / dt^2, contact and film of real tape at dt = 10 ms; the others are held by their mass.
+StripSystem make(Shape shape, int size) {
   StripSystem s;
-  s.add_strip(rows);
-  if (folded) s.fold(0, rows, 1e4);
+  if (shape >= Shape::light_strip) s.vertex_mass = 2e-4;
+  if (shape == Shape::light_roll) {
+    s.add_roll(size, 10);
+    return s;
+  }
+  s.add_strip(size);
+  if (shape == Shape::fold) s.fold(0, size, 1e4);
+  if (shape == Shape::light_fold) s.fold(0, size, 10);
   return s;
 }
-Loaded loaded(const benchmark::State& state, bool folded = false) {
+Loaded loaded(const benchmark::State& state, Shape shape = Shape::strip) {
   set_threads(1);
-  return Loaded(strip(static_cast<int>(state.range(0)), folded));
+  return Loaded(make(shape, static_cast<int>(state.range(0))));
 }
 
-void report(benchmark::State& state, Real items_per_iteration, Real flops = 0) {
+void report(benchmark::State& state, const Loaded& a, Real items_per_iteration, Real flops = 0) {
   using benchmark::Counter;
   const auto iterations = static_cast<Real>(state.iterations());
   state.counters["blocks_per_s"] = Counter(items_per_iteration * iterations, Counter::kIsRate);
-  state.counters["per_row"] = Counter(static_cast<Real>(state.range(0)) * iterations, Counter::kIsRate | Counter::kInvert);
+  state.counters["per_row"] =
+      Counter(static_cast<Real>(a.system.n) / StripSystem::kColumns * iterations, Counter::kIsRate | Counter::kInvert);
   if (flops > 0) state.counters["flops"] = Counter(flops * iterations, Counter::kIsRate);
 }
 
@@ -60,24 +72,24 @@ void pattern(benchmark::State& state) {
     BlockMatrix fresh;
     fresh.set_fixed_pattern(a.system.n, a.fixed_keys.span());
   }
-  report(state, a.fixed_keys.size());
+  report(state, a, a.fixed_keys.size());
 }
 void accumulate(benchmark::State& state) {
   Loaded a = loaded(state);
   for (auto _ : state) a.matrix.accumulate_fixed(a.fixed_values.span());
-  report(state, a.fixed_keys.size());
+  report(state, a, a.fixed_keys.size());
 }
 void multiply(benchmark::State& state) {
   Loaded a = loaded(state);
   for (auto _ : state) a.matrix.multiply(a.b.span(), a.x.span());
-  report(state, a.matrix.blocks(), 36.0 * a.matrix.blocks());
+  report(state, a, a.matrix.blocks(), 36.0 * a.matrix.blocks());
 }
 void strip_factor(benchmark::State& state) {
   const Loaded a = loaded(state);
   StripFactor factor(a.system.layout);
   for (auto _ : state) factor.factor(a.host);
   const Real kd = 3 * (2 * StripSystem::kColumns) + 2;
-  report(state, a.matrix.blocks(), 3.0 * a.system.n * kd * kd);
+  report(state, a, a.matrix.blocks(), 3.0 * a.system.n * kd * kd);
 }
 void strip_solve(benchmark::State& state) {
   Loaded a = loaded(state);
@@ -85,44 +97,51 @@ void strip_solve(benchmark::State& state) {
   factor.factor(a.host);
   for (auto _ : state) factor.solve(a.b.span(), a.x.span());
   const Real kd = 3 * (2 * StripSystem::kColumns) + 2;
-  report(state, a.matrix.blocks(), 4 * 3.0 * a.system.n * kd);
+  report(state, a, a.matrix.blocks(), 4 * 3.0 * a.system.n * kd);
 }
 void cholesky_analysis(benchmark::State& state) {
   const Loaded a = loaded(state);
   for (auto _ : state) Cholesky().analyze(a.host);
-  report(state, a.matrix.blocks());
+  report(state, a, a.matrix.blocks());
 }
 void cholesky_factor(benchmark::State& state) {
   const Loaded a = loaded(state);
   Cholesky cholesky;
   for (auto _ : state) cholesky.factor(a.host);
-  report(state, a.matrix.blocks(), cholesky.factor_flops());
+  report(state, a, a.matrix.blocks(), cholesky.factor_flops());
 }
 void cholesky_solve(benchmark::State& state) {
   Loaded a = loaded(state);
   Cholesky cholesky;
   cholesky.factor(a.host);
   for (auto _ : state) cholesky.solve(a.b.span(), a.x.span());
-  report(state, a.matrix.blocks(), 4 * cholesky.factor_nonzeros());
+  report(state, a, a.matrix.blocks(), 4 * cholesky.factor_nonzeros());
+}
+void two_level_build(benchmark::State& state) {
+  Loaded a = loaded(state);
+  TwoLevel m(a.system.layout);
+  for (auto _ : state) m.build(a.matrix, a.points.span());
+  report(state, a, a.matrix.blocks());
 }
 void cost_model(benchmark::State& state) {
-  const Loaded a = loaded(state, true);
+  const Loaded a = loaded(state, Shape::fold);
   for (auto _ : state) benchmark::DoNotOptimize(linear_costs(a.host, a.system.layout));
-  report(state, a.matrix.blocks());
+  report(state, a, a.matrix.blocks());
 }
 
 /// The whole solve, pattern kept; the label is the solver that ran, its iterations, and what the cost model foresaw.
-void solve(benchmark::State& state, LinearKind kind, bool folded) {
-  Loaded a = loaded(state, folded);
+void solve(benchmark::State& state, LinearKind kind, Shape shape) {
+  Loaded a = loaded(state, shape);
   LinearSolver solver({.linear = kind}, a.system.layout);
   LinearReport last;
-  for (auto _ : state) last = solver.solve(a.matrix, a.b.span(), a.x.span());
+  for (auto _ : state) last = solver.solve(a.matrix, a.points.span(), a.b.span(), a.x.span());
   const LinearCosts costs = linear_costs(a.host, a.system.layout);
-  report(state, a.matrix.blocks());
+  report(state, a, a.matrix.blocks());
   state.counters["iterations"] = last.iterations;
-  state.counters["model_ms"] = 1e3 * (last.solver == "pcg_strip"    ? costs.pcg_strip
-                                      : last.solver == "pcg_jacobi" ? costs.pcg_jacobi
-                                                                    : costs.cholesky);
+  state.counters["model_ms"] = 1e3 * (last.solver == "pcg_strip"       ? costs.pcg_strip
+                                      : last.solver == "pcg_jacobi"    ? costs.pcg_jacobi
+                                      : last.solver == "pcg_two_level" ? costs.pcg_two_level
+                                                                       : costs.cholesky);
   state.SetLabel(last.solver);
 }
 }  // namespace
@@ -136,11 +155,19 @@ BENCHMARK(strip_solve) TAPE_ROWS;
 BENCHMARK(cholesky_analysis) TAPE_ROWS;
 BENCHMARK(cholesky_factor) TAPE_ROWS;
 BENCHMARK(cholesky_solve) TAPE_ROWS;
+BENCHMARK(two_level_build) TAPE_ROWS;
 BENCHMARK(cost_model) TAPE_ROWS;
-BENCHMARK_CAPTURE(solve, auto, LinearKind::automatic, false) TAPE_ROWS;
-BENCHMARK_CAPTURE(solve, cholesky, LinearKind::cholesky, false) TAPE_ROWS;
-BENCHMARK_CAPTURE(solve, jacobi, LinearKind::pcg_jacobi, false) TAPE_ROWS;
-BENCHMARK_CAPTURE(solve, folded_auto, LinearKind::automatic, true) TAPE_ROWS;
-BENCHMARK_CAPTURE(solve, folded_cholesky, LinearKind::cholesky, true) TAPE_ROWS;
-BENCHMARK_CAPTURE(solve, folded_strip, LinearKind::pcg_strip, true) TAPE_ROWS;
-BENCHMARK_CAPTURE(solve, folded_jacobi, LinearKind::pcg_jacobi, true) TAPE_ROWS;
+
+#define TAPE_SHORT ->Arg(100)->Arg(1000)->Unit(benchmark::kMillisecond)
+#define TAPE_TURNS ->Arg(2)->Arg(8)->Arg(32)->Unit(benchmark::kMillisecond)
+#define TAPE_SOLVERS(shape, sizes, jacobi_sizes)                                              \
+  BENCHMARK_CAPTURE(solve, shape##_auto, LinearKind::automatic, Shape::shape) sizes;          \
+  BENCHMARK_CAPTURE(solve, shape##_cholesky, LinearKind::cholesky, Shape::shape) sizes;       \
+  BENCHMARK_CAPTURE(solve, shape##_strip, LinearKind::pcg_strip, Shape::shape) sizes;         \
+  BENCHMARK_CAPTURE(solve, shape##_two_level, LinearKind::pcg_two_level, Shape::shape) sizes; \
+  BENCHMARK_CAPTURE(solve, shape##_jacobi, LinearKind::pcg_jacobi, Shape::shape) jacobi_sizes
+TAPE_SOLVERS(strip, TAPE_ROWS, TAPE_ROWS);
+TAPE_SOLVERS(fold, TAPE_ROWS, TAPE_ROWS);
+TAPE_SOLVERS(light_strip, TAPE_ROWS, TAPE_SHORT);
+TAPE_SOLVERS(light_fold, TAPE_ROWS, TAPE_SHORT);
+TAPE_SOLVERS(light_roll, TAPE_TURNS, TAPE_TURNS);

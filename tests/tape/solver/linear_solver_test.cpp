@@ -11,12 +11,12 @@ using namespace tape::on_cpu;
 using test::StripSystem;
 
 namespace {
-constexpr LinearKind kKinds[] = {LinearKind::cholesky, LinearKind::pcg_jacobi, LinearKind::pcg_strip};
+constexpr LinearKind kKinds[] = {LinearKind::cholesky, LinearKind::pcg_jacobi, LinearKind::pcg_strip, LinearKind::pcg_two_level};
 
 struct Loaded {
   BlockMatrix matrix;
-  Buffer<Vec3> b, x;
-  explicit Loaded(const StripSystem& s) : b(s.load()) {
+  Buffer<Vec3> points, b, x;
+  explicit Loaded(const StripSystem& s) : points(s.x), b(s.load()) {
     Buffer<std::uint64_t> fixed_keys(s.fixed.keys), contact_keys(s.contact.keys);
     matrix.set_fixed_pattern(s.n, fixed_keys.span());
     matrix.set_contact_pattern(contact_keys.span());
@@ -25,7 +25,7 @@ struct Loaded {
     matrix.accumulate_contact(contact_values.span());
     x.resize(s.n);
   }
-  LinearReport solve(LinearSolver& solver) { return solver.solve(matrix, b.span(), x.span()); }
+  LinearReport solve(LinearSolver& solver) { return solver.solve(matrix, points.span(), b.span(), x.span()); }
 };
 
 LinearReport solve(const StripSystem& s, LinearParams params) {
@@ -129,7 +129,7 @@ TEST(LinearSolver, TheStripPreconditionerNeedsAThirdOfTheIterationsOfBlockJacobi
 
 TEST(LinearSolver, ATighterToleranceTakesMoreIterations) {
   const StripSystem s = folded(100, 1e5);
-  for (LinearKind kind : {LinearKind::pcg_jacobi, LinearKind::pcg_strip}) {
+  for (LinearKind kind : {LinearKind::pcg_jacobi, LinearKind::pcg_strip, LinearKind::pcg_two_level}) {
     int last = 0;
     for (Real tolerance : {1e-2, 1e-4, 1e-6}) {
       const LinearReport report = solve(s, {.linear = kind, .pcg_tol = tolerance});
@@ -229,8 +229,11 @@ TEST(LinearSolver, ItHasTheSameBitsForAnyThreadsAnyOrderAndAnyPast) {
     }
 }
 
-TEST(LinearSolver, AutoTakesTheBandForAStripAndCholeskyWithoutOneAndSaysSo) {
+TEST(LinearSolver, AutoTakesTheBandForAStripRigidMotionsForARollAndCholeskyWithoutAStripAndSaysSo) {
   EXPECT_EQ(solve(strip(400), {}).solver, "pcg_strip");
+  StripSystem rolled;
+  rolled.add_roll(4, 10);
+  EXPECT_EQ(solve(rolled, {}).solver, "pcg_two_level");
   StripSystem bodies;
   for (int i = 0; i < 4; ++i) bodies.add_body(Vec3(i, 0, 0), 1);
   EXPECT_EQ(solve(bodies, {}).solver, "cholesky_simplicial");
@@ -238,6 +241,19 @@ TEST(LinearSolver, AutoTakesTheBandForAStripAndCholeskyWithoutOneAndSaysSo) {
   unknown.layout.strips.clear();
   EXPECT_EQ(solve(unknown, {}).solver, "cholesky_simplicial");
   EXPECT_EQ(solve(strip(20), {.linear = LinearKind::pcg_jacobi}).solver, "pcg_jacobi");
+}
+
+TEST(LinearSolver, OnlyTheSideWithHostMemoryOffersTheStripPreconditioner) {
+  EXPECT_EQ(available_solvers(),
+            (std::vector{LinearKind::cholesky, LinearKind::pcg_jacobi, LinearKind::pcg_two_level, LinearKind::pcg_strip}));
+  for (LinearKind kind : available_solvers()) {
+    check({.linear = kind}, true);
+    if (kind == LinearKind::pcg_strip) {
+      EXPECT_THROW(check({.linear = kind}, false), SettingsError);
+    } else {
+      check({.linear = kind}, false);
+    }
+  }
 }
 
 TEST(LinearSolver, ASettingOutOfRangeIsRefusedByName) {

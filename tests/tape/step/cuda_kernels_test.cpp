@@ -28,10 +28,10 @@ std::string symbols_of(const std::string& library) {
   return without_spaces(all);
 }
 #endif
-/// Launches whatever a scene with strips, driven and dynamic bodies, grips and friction launches, with both linear solvers.
+/// Launches whatever a scene with strips, driven and dynamic bodies, grips and friction launches, with all linear solvers that CUDA offers.
 std::set<std::string> launched_kernels() {
   record_launches(true);
-  for (const LinearKind linear : {LinearKind::cholesky, LinearKind::pcg_jacobi}) {
+  for (const LinearKind linear : {LinearKind::cholesky, LinearKind::pcg_jacobi, LinearKind::pcg_two_level}) {
     auto setup = test::strip_setup(test::flat_strip(0.04, 3, Vec3(-0.02, 0, 3e-4)));
     setup.linear.linear = linear;
     test::add_body(setup, "table", box_mesh(Vec3(0.1, 0.06, 0.01)), Motion::fixed, Vec3(0, 0, -0.005));

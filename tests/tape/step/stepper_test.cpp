@@ -87,6 +87,20 @@ TEST(Stepper, ATighterToleranceTakesMoreIterations) {
   }
 }
 
+TEST(Stepper, TheTwoLevelSolverKnowsWhereTheStripIsAndNeedsAnEighthOfTheIterationsOfBlockJacobi) {
+  const auto iterations = [](LinearKind linear) {
+    auto setup = test::strip_setup(test::flat_strip(0.3, 6, Vec3::Zero()));
+    setup.scene.grips.push_back(test::hold("wall", {0, 1, 2, 3, 4, 5, 6}));
+    setup.linear.linear = linear;
+    Simulation simulation(setup);
+    int sum = 0;
+    for (int k = 0; k < 5; ++k) sum += simulation.step().linear_iterations;
+    EXPECT_TRUE(simulation.broken.empty()) << simulation.broken.front();
+    return sum;
+  };
+  EXPECT_LE(8 * iterations(LinearKind::pcg_two_level), iterations(LinearKind::pcg_jacobi));
+}
+
 TEST(Stepper, AForcedOffEffectIsNotBuilt) {
   auto setup = busy_setup();
   setup.forced["friction"] = false;
