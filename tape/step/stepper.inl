@@ -1,5 +1,6 @@
 #pragma once
 #include <cmath>
+#include <utility>
 
 #include "tape/bodies/configuration.hpp"
 #include "tape/bodies/free_flight.hpp"
@@ -307,17 +308,20 @@ class SideStepper final : public Stepper {
       const Real moved = reduce(now_.x.size(), 0.0, stepping::Travel{coordinates_.paths(now_, direction_.span())}, stepping::Larger{});
       if (!std::isfinite(moved) || !std::isfinite(slope)) return fail(report, "the Newton direction is not finite");
       if (moved <= kPositionRoundOff * extent_) return true;  // no update is left that positions could hold
-      const Real rho = previous > 0 ? std::fmin(moved / previous, 0.99) : 0;
+      const bool contracts = moved < previous;                // else the ratio is no rate; as_foreseen() judges this update
+      const Real rho = contracts ? std::fmin(moved / previous, 0.99) : 0;
       report.last_update = moved;
-      report.stop_error_estimate = previous > 0 ? moved * rho / (1 - rho) : moved;
+      report.stop_error_estimate = contracts ? moved * rho / (1 - rho) : moved;
       // An update that friction's secant shortened says nothing of what is left.
       const bool converged = !overshot_ && stops(moved, slope, rho);
-      previous = overshot_ ? 0 : moved;
+      const Real last = std::exchange(previous, overshot_ ? 0 : moved);
       bool at_round_off = false;
+      const Real before = energy_.sum, round_off = kEnergyRoundOff * energy_.scale;
       const int halvings = report.halvings;
       if (!line_search(slope, report, at_round_off)) return false;
       overshot_ = report.halvings > halvings;
-      if (at_round_off || (converged && moved <= objective_->accuracy_to_judge(view(now_)))) return true;
+      const bool foreseen = -slope <= 1e3 * round_off || as_foreseen((before - energy_.sum) / -slope, moved, last);
+      if (at_round_off || (converged && foreseen && moved <= objective_->accuracy_to_judge(view(now_)))) return true;
     }
     return fail(report, "Newton's method took " + std::to_string(params.max_newton) + " iterations (solver.max_newton)");
   }
@@ -327,6 +331,17 @@ class SideStepper final : public Stepper {
     if (params.stop == StopRule::velocity) return moved < params.velocity_tol * dt_;
     const Real lost = mode_ == HessianMode::projected ? (1 - rho) * (1 - rho) : 1;
     return -slope / lost <= moving_mass_ * params.velocity_tol * params.velocity_tol;
+  }
+
+  /// Whether the objective was along the last update what Newton's parabola says: then the energy fell by the share 1/2 of the slope. On
+  /// its way out of the barrier, which ends like a fourth power, an update is a third of the way to the edge, however light the push is
+  /// by then: a small update of share 0.6 or more, and gravity still to come. A projected Hessian is too stiff and converges by a rate,
+  /// which makes the share (1 + rate)/2: there the updates must shrink by that rate, and what is left of them must be small.
+  bool as_foreseen(Real share, Real moved, Real previous) const {
+    if (std::fabs(share - 0.5) <= 0.05) return true;
+    const Real rate = 2 * share - 1;
+    return mode_ == HessianMode::projected && rate < 1 && moved <= (rate + 0.1) * previous &&
+           moved * rate / (1 - rate) <= world_.setup.newton.velocity_tol * dt_;
   }
 
   /// direction_ = -H^-1 g, right_ = -g.
@@ -370,7 +385,7 @@ class SideStepper final : public Stepper {
       }
     }
     const Stopwatch watch(line_search_ms_);
-    const Real round_off = 4e-15 * energy_.scale;
+    const Real round_off = kEnergyRoundOff * energy_.scale;
     at_round_off = -slope <= round_off;
     Real step = 1;
     for (int h = 0; h <= world_.setup.newton.max_line_search; ++h, step /= 2) {
@@ -444,7 +459,7 @@ class SideStepper final : public Stepper {
   Buffer<Pose> body_target_;
   Buffer<Real> grip_stiffness_, mu_, along_;
   Buffer<Adhesion> adhesion_;
-  static constexpr Real kPositionRoundOff = 1e-15;
+  static constexpr Real kPositionRoundOff = 1e-15, kEnergyRoundOff = 4e-15;
   HessianMode mode_ = HessianMode::exact;       // of the last direction
   EnergySum energy_;                            // at now_
   Real dt_ = 0, moving_mass_ = 0, extent_ = 0;  // extent_: largest coordinate [m]

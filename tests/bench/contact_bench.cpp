@@ -100,7 +100,7 @@ struct Scene {
     potential.emplace(empty, EffectParams{}, assembly, on, view());
   }
   PathView paths() const { return {x.span(), owner.span(), direction.span(), bodies.span()}; }
-  StateView view() const { return {0.01, false, x.span(), x.span(), x.span(), owner.span(), {}, {}, {}, {}, {}}; }
+  StateView view() const { return {0.01, false, x.span(), x.span(), x.span(), owner.span(), {}, {}, {}, {}, {}, {}, {}}; }
   int pairs() const { return search.candidates().size; }
 };
 Scene& scene(benchmark::State& state) {

@@ -52,6 +52,7 @@ TEST(Adhesion, HoldsAStripUnderACeilingAndWithoutItFalls) {
   }
   test::Simulation free(ceiling(AdhesionLaw::none));
   free.run_to(0.3);
+  EXPECT_TRUE(free.broken.empty()) << free.broken.front();
   EXPECT_EQ(remembered(free.state()), 0);
   EXPECT_LT(lowest(free), -0.4) << "g t^2/2 = 0.44 m";
 }
@@ -60,6 +61,7 @@ TEST(Adhesion, TheBackingDoesNotStick) {
   setup.scene.strips[0].pose.rotation = Mat3::Identity();
   test::Simulation s(setup);
   s.run_to(0.1);
+  EXPECT_TRUE(s.broken.empty()) << s.broken.front();
   EXPECT_EQ(remembered(s.state()), 0);
   EXPECT_LT(lowest(s), -0.04);
 }
