@@ -5,7 +5,7 @@
 #include "tape/solver/cost_model.hpp"
 #include "tape/solver/linear_solver.hpp"
 #include "tape/solver/two_level.hpp"
-#include "tests/support/strip_system.hpp"
+#include "tests/support/loaded_system.hpp"
 
 /// Cost of the linear part for strips of `rows` rows of 7 vertices: the constants of the cost model (tape/solver/README.md) come
 /// from here. One thread; "per_row" is CPU seconds per row, "flops" what the cost model counts.
@@ -14,28 +14,9 @@ using namespace tape::on_cpu;
 using test::StripSystem;
 
 namespace {
-struct Loaded {
-  StripSystem system;
-  BlockMatrix matrix;
-  Buffer<std::uint64_t> fixed_keys, contact_keys;
-  Buffer<Mat3> fixed_values, contact_values;
-  Buffer<Vec3> points, b, x;
+struct Loaded : test::LoadedSystem {
   HostBlocks host;
-  explicit Loaded(StripSystem s)
-      : system(std::move(s)),
-        fixed_keys(system.fixed.keys),
-        contact_keys(system.contact.keys),
-        fixed_values(system.fixed.values),
-        contact_values(system.contact.values),
-        points(system.x),
-        b(system.load()) {
-    matrix.set_fixed_pattern(system.n, fixed_keys.span());
-    matrix.set_contact_pattern(contact_keys.span());
-    matrix.accumulate_fixed(fixed_values.span());
-    matrix.accumulate_contact(contact_values.span());
-    matrix.download(host);
-    x.resize(system.n);
-  }
+  explicit Loaded(StripSystem s) : LoadedSystem(std::move(s)) { matrix.download(host); }
 };
 /// What `range(0)` counts: rows of a strip, or turns of a roll.
 enum class Shape { strip, fold, light_strip, light_fold, light_roll };

@@ -5,7 +5,7 @@
 #include <Eigen/Cholesky>
 #include <functional>
 
-#include "tests/support/strip_system.hpp"
+#include "tests/support/loaded_system.hpp"
 using namespace tape;
 using namespace tape::on_cpu;
 using test::StripSystem;
@@ -13,18 +13,8 @@ using test::StripSystem;
 namespace {
 constexpr LinearKind kKinds[] = {LinearKind::cholesky, LinearKind::pcg_jacobi, LinearKind::pcg_strip, LinearKind::pcg_two_level};
 
-struct Loaded {
-  BlockMatrix matrix;
-  Buffer<Vec3> points, b, x;
-  explicit Loaded(const StripSystem& s) : points(s.x), b(s.load()) {
-    Buffer<std::uint64_t> fixed_keys(s.fixed.keys), contact_keys(s.contact.keys);
-    matrix.set_fixed_pattern(s.n, fixed_keys.span());
-    matrix.set_contact_pattern(contact_keys.span());
-    Buffer<Mat3> fixed_values(s.fixed.values), contact_values(s.contact.values);
-    matrix.accumulate_fixed(fixed_values.span());
-    matrix.accumulate_contact(contact_values.span());
-    x.resize(s.n);
-  }
+struct Loaded : test::LoadedSystem {
+  using LoadedSystem::LoadedSystem;
   LinearReport solve(LinearSolver& solver) { return solver.solve(matrix, points.span(), b.span(), x.span()); }
 };
 

@@ -8,26 +8,14 @@
 #include "tape/core/execution.hpp"
 #include "tape/math/rotation.hpp"
 #include "tape/solver/linear_solver.hpp"
-#include "tests/support/strip_system.hpp"
+#include "tests/support/loaded_system.hpp"
 using namespace tape;
 using namespace tape::on_cpu;
 using test::StripSystem;
+using Loaded = test::LoadedSystem;
 
 namespace {
 using VectorMap = Eigen::Map<const Eigen::VectorXd>;
-
-struct Loaded {
-  BlockMatrix matrix;
-  Buffer<Vec3> points;
-  explicit Loaded(const StripSystem& s) : points(s.x) {
-    Buffer<std::uint64_t> fixed_keys(s.fixed.keys), contact_keys(s.contact.keys);
-    matrix.set_fixed_pattern(s.n, fixed_keys.span());
-    matrix.set_contact_pattern(contact_keys.span());
-    Buffer<Mat3> fixed_values(s.fixed.values), contact_values(s.contact.values);
-    matrix.accumulate_fixed(fixed_values.span());
-    matrix.accumulate_contact(contact_values.span());
-  }
-};
 
 /// Inverses of the diagonal blocks: 6x6 for bodies, 3x3 for the rest.
 Eigen::MatrixXd block_jacobi(const StripSystem& s, const Eigen::MatrixXd& a) {
