@@ -214,7 +214,7 @@ class SceneReader {
     std::erase_if(scene_.adhesives, [&](const tape::AdhesivePair& p) {
       return (p.a == adhesive.a && p.b == adhesive.b) || (p.a == adhesive.b && p.b == adhesive.a);
     });
-    scene_.adhesives.push_back(adhesive);
+    if (adhesive.adhesion.law != tape::AdhesionLaw::none) scene_.adhesives.push_back(adhesive);
   }
   void set_friction(int a, int b, Real mu) {
     for (tape::FrictionPair& f : scene_.frictions)

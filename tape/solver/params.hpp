@@ -9,6 +9,7 @@ constexpr auto enum_names(HessianMode) { return std::array<std::string_view, 2>{
 
 /// `velocity`: the last Newton update, before any limit, moves no vertex faster than the tolerance [the paper].
 /// `work`: the decrease it still promises is below the kinetic energy of the moving mass at the tolerance.
+/// Either way the energy must have fallen along the update as Newton's parabola says: what leaves contact moves little at first.
 enum class StopRule { velocity, work };
 constexpr auto enum_names(StopRule) { return std::array<std::string_view, 2>{"velocity", "work"}; }
 

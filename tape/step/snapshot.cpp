@@ -53,9 +53,7 @@ void visit_state(State& s, const Visit& visit) {
   visit(s.step);
   for (int& c : s.grip_closed) visit(c);
   for_each_memory(s.memory, [&](auto& pairs) {
-    int count = static_cast<int>(pairs.size());
-    visit(count);
-    pairs.resize(static_cast<std::size_t>(count));
+    pairs.resize(visit.count(pairs.size()));
     for (auto& pair : pairs) pair.visit(visit);
   });
 }
@@ -64,6 +62,10 @@ struct Write {
   Flat& flat;
   void operator()(Real& v) const { flat.reals.push_back(v); }
   void operator()(int& v) const { flat.integers.push_back(v); }
+  std::size_t count(std::size_t n) const {
+    flat.integers.push_back(static_cast<std::int64_t>(n));
+    return n;
+  }
   template <class M>
   void operator()(M& m) const {
     flat.reals.insert(flat.reals.end(), m.data(), m.data() + m.size());
@@ -77,6 +79,11 @@ struct Read {
     const std::int64_t value = flat.integers.at(integer++);
     if (value < 0 || value > std::numeric_limits<int>::max()) throw std::out_of_range("integer");
     v = static_cast<int>(value);
+  }
+  std::size_t count(std::size_t) const {  // of things that hold an integer each
+    const std::int64_t n = flat.integers.at(integer++);
+    if (n < 0 || static_cast<std::size_t>(n) > flat.integers.size()) throw std::out_of_range("count");
+    return static_cast<std::size_t>(n);
   }
   template <class M>
   void operator()(M& m) const {
