@@ -59,7 +59,7 @@ void for_each_memory(EffectMemory& memory, const F& f) {
 }
 
 /// Vertex and triangle of all pairs that have left contact, sorted.
-inline std::vector<VertexTriangle> pairs_out_of_contact(EffectMemory& memory) {
+inline std::vector<VertexTriangle> pairs_out_of_contact(EffectMemory memory) {
   std::vector<VertexTriangle> pairs;
   for_each_memory(memory, [&](auto& remembered) {
     if constexpr (requires { remembered[0].replaces_contact(); })

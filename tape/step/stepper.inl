@@ -1,5 +1,6 @@
 #pragma once
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "tape/bodies/configuration.hpp"
@@ -95,7 +96,6 @@ class SideStepper final : public Stepper {
       : world_(world),
         coordinates_(world.assembly),
         search_(world.surface, world.setup.scene.dhat(), world.setup.scene.contact.guard * world.setup.scene.dhat()),
-        normals_(world.surface),
         linear_(world.setup.linear, layout(world.assembly)) {
     const State state = State::start(world);
     std::vector<Real> mu;
@@ -118,6 +118,9 @@ class SideStepper final : public Stepper {
     std::vector<bool> on;
     for (const PlanLine& line : world.plan) on.push_back(line.on);
     objective_.emplace(world.setup.scene, world.setup.effects, world.assembly, on, view(now_));
+    objective_->for_each([&]<class T>(std::string_view, Term<T>&) {
+      if (Remembers<T>) normals_.emplace(world.surface);
+    });
     direction_.resize(coordinates_.blocks());
     right_.resize(coordinates_.blocks());
     points_.resize(coordinates_.blocks());
@@ -245,6 +248,7 @@ class SideStepper final : public Stepper {
 
   /// Brings the memory to the end of a step at now_, and books what that does to the energy.
   void renew_memory(State& state, Real dt, StepReport& report) {
+    if (!normals_) return;
     report.adhesion = adhesion();
     const Real before = objective_->adhesive_energy(view(now_));
     state.memory = remember(dt);
@@ -269,30 +273,27 @@ class SideStepper final : public Stepper {
     }
     return out;
   }
-  /// What adheres at the start of a run: pairs in the contact band are as engaged as new ones.
-  EffectMemory remember_start(const EffectMemory& given) {
-    update_candidates(direction_.span());
-    objective_->recall(given, view(now_), search_.surface());
-    return remember(0);
-  }
   /// What adheres at now_, `dt` [s] after the start of the step.
   EffectMemory remember(Real dt) {
+    if (!normals_) return {};
     StateView s = view(now_);
     s.dt = dt;
-    s.normal = normals_.at(s.x);
+    s.normal = normals_->at(s.x);
     return objective_->remember(s);
+  }
+  /// Candidates and elements of a step that starts at now_ with this memory.
+  void recall(EffectMemory memory) {
+    search_.set_bonded(pairs_out_of_contact(memory));  // makes the search start anew: its past must not change the order of sums
+    update_candidates(direction_.span());
+    if (normals_) objective_->recall(memory, view(now_), search_.surface());
   }
 
   /// Newton's method from now_ == start_, the start of a step at `state`, to its end.
   bool newton(const State& state, StepReport& report) {
     const NewtonParams& params = world_.setup.newton;
     parallel_for(direction_.size(), stepping::Fill{direction_.span()});
-    EffectMemory memory = state.memory;
-    if (state.time == 0) memory = remember_start(memory);
-    search_.set_bonded(pairs_out_of_contact(memory));
-    search_.forget();  // what earlier steps found must not change the order of this one's sums
-    update_candidates(direction_.span());
-    objective_->recall(memory, view(now_), search_.surface());
+    recall(state.memory);
+    if (state.time == 0) recall(remember(0));  // at the start of a run pairs in the contact band are as engaged as new ones
     objective_->begin_step(view(now_));
     {
       const Stopwatch watch(line_search_ms_);
@@ -451,7 +452,7 @@ class SideStepper final : public Stepper {
   const World& world_;
   Coordinates coordinates_;
   ContactSearch search_;
-  VertexNormals normals_;
+  std::optional<VertexNormals> normals_;  // where something adheres
   LinearSolver linear_;
   std::optional<Objective> objective_;
   Configuration start_, now_, trial_;

@@ -28,7 +28,8 @@ std::string symbols_of(const std::string& library) {
   return without_spaces(all);
 }
 #endif
-/// Launches whatever a scene with strips, driven and dynamic bodies, grips and friction launches, with all linear solvers that CUDA offers.
+/// Launches whatever a scene with strips, driven and dynamic bodies, grips, friction and adhesion launches, with all linear solvers that
+/// CUDA offers.
 std::set<std::string> launched_kernels() {
   record_launches(true);
   for (const LinearKind linear : {LinearKind::cholesky, LinearKind::pcg_jacobi, LinearKind::pcg_two_level}) {
@@ -41,6 +42,12 @@ std::set<std::string> launched_kernels() {
     grip.name = "pull";
     grip.what = {.object = "tape", .vertices = {0, 1, 2, 3}, .points = {}};
     setup.scene.grips.push_back(grip);
+    setup.scene.materials.push_back({"steel", 0.5});
+    setup.scene.bodies[0].material = 1;
+    for (const AdhesionLaw law : {AdhesionLaw::per_pair, AdhesionLaw::bond}) {  // to the table, and to box and pusher
+      setup.scene.adhesives.push_back(
+          {0, law == AdhesionLaw::bond ? 0 : 1, {law, {{true, true}, {true, true}}, {.beta0 = 1}, {.floor = 0}}});
+    }
     test::Simulation simulation(setup);
     for (int k = 0; k < 5; ++k) simulation.step();
     EXPECT_TRUE(simulation.broken.empty()) << simulation.broken.front();
