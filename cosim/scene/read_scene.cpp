@@ -5,6 +5,7 @@
 
 #include "cosim/scene/bodies.hpp"
 #include "cosim/scene/pose.hpp"
+#include "cosim/scene/roll.hpp"
 #include "cosim/scene/script.hpp"
 #include "tape/model/strip_mesh.hpp"
 
@@ -64,12 +65,32 @@ class SceneReader {
   }
 
   void strips() {
-    const Reader one = file_["strip"], list = file_["strips"];
+    const Reader one = file_["strip"], list = file_["strips"], roll = file_["roll"];
     if (one && list) list.fail("give either strip or strips");
-    if (one) strip(one);
+    if (roll) {
+      wound_strip(one, roll);
+    } else if (one) {
+      strip(one);
+    }
     for (const Reader& entry : list.items()) strip(entry);
   }
   void strip(const Reader& section) {
+    Strip& strip = add_strip(section);
+    section.read(strip.mesh);
+    strip.pose = read_pose(section);
+    for (const Reader& piece : section["path"].items()) strip.path.push_back(path_piece(piece));
+    strip.velocity = section["velocity"].vector_or(strip.velocity, kPlace, "m/s");
+    mesh_strip(section);
+  }
+  void wound_strip(const Reader& section, const Reader& roll) {
+    Strip& strip = add_strip(section);
+    claim_name("hub", roll);
+    read_roll(roll, section, scene_, strip);
+    scene_.bodies.back().material = material(roll["core"]["material"].text_or("default"));
+    mesh_strip(roll);
+  }
+  /// What every strip has: name, film, material.
+  Strip& add_strip(const Reader& section) {
     Strip strip;
     const std::size_t count = scene_.strips.size();
     const Reader name = section["name"];
@@ -81,17 +102,17 @@ class SceneReader {
     } else if (!file_["film"]) {
       file_["film"].fail("missing; the name of a film in data/tapes");
     }
-    section.read(strip.mesh);
-    strip.pose = read_pose(section);
-    for (const Reader& piece : section["path"].items()) strip.path.push_back(path_piece(piece));
-    strip.velocity = section["velocity"].vector_or(strip.velocity, kPlace, "m/s");
     strip.material = material(section["material"].text_or("default"));
+    return scene_.strips.emplace_back(std::move(strip));
+  }
+  /// @param section  where its settings stand
+  void mesh_strip(const Reader& section) {
+    const Strip& strip = scene_.strips.back();
     try {
       meshes_.push_back(make_strip_mesh(strip.mesh, scene_.films[strip.film].width, scene_.seed));
     } catch (const InputError& e) {
       section.fail(e.what());
     }
-    scene_.strips.push_back(std::move(strip));
   }
   static tape::PathPiece path_piece(const Reader& piece) {
     const Reader line = piece["line"], arc = piece["arc"];

@@ -1,12 +1,15 @@
 #pragma once
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "tape/core/settings.hpp"
 #include "tape/model/film.hpp"
+#include "tape/model/mass_properties.hpp"
 #include "tape/model/triangle_mesh.hpp"
+#include "tape/model/winding.hpp"
 
 namespace tape {
 enum class MeshPattern { same, alternating, crossed, irregular };
@@ -73,6 +76,8 @@ struct Strip {
   std::vector<PathPiece> path;   ///< empty: straight. Shorter than the strip: goes on straight
   Vec3 velocity = Vec3::Zero();  ///< [m/s]
   int material = 0;              ///< index into Scene::materials
+  /// A wound strip follows this instead of `path`; `pose` is that of the roll, the axis y.
+  std::optional<Winding> winding = {};
 };
 
 /// Prescribed pose at a time; motion.hpp says how a body moves between two of them.
@@ -95,6 +100,8 @@ struct Body {
   std::vector<Waypoint> waypoints;       ///< of a driven body, times ascending; none: it keeps its velocities
   Real xi = 0;                           ///< [m] half-thickness in contact
   int material = 0;                      ///< index into Scene::materials
+  /// Of the shape that the mesh stands for, in the mesh's frame; none: those of the mesh itself.
+  std::optional<MassProperties> solid = {};
 };
 
 struct Material {
