@@ -32,6 +32,9 @@ Json settings_json(const Setup& setup) {
     add_fields(json["strips"][strip.name], strip.mesh);
     json["strips"][strip.name]["cell_length"] = cell_length(strip.mesh, film.width);  // whole cells
     json["strips"][strip.name]["film"] = film.name;
+    if (strip.winding)
+      json["strips"][strip.name]["winding"] = {
+          {"radius", strip.winding->radius}, {"pitch", strip.winding->pitch}, {"turns", strip.winding->turns}};
   }
   for (const Material& material : scene.materials) json["materials"][material.name] = {{"mu", material.mu}};
   for (const FrictionPair& pair : scene.frictions)

@@ -12,15 +12,17 @@ constexpr int kDone = 0, kNumericalFailure = 1, kBadInput = 2, kInterrupted = 13
 using Action = std::function<int()>;
 void add_run(CLI::App& app, Action& chosen);
 void add_explain(CLI::App& app, Action& chosen);
+void add_wind(CLI::App& app, Action& chosen);
 void add_check(CLI::App& app, Action& chosen);
 void add_study(CLI::App& app, Action& chosen);
 void add_render(CLI::App& app, Action& chosen);
 void add_info(CLI::App& app, Action& chosen);
 
-/// SCENE and --set, which several subcommands share.
+/// SCENE, --set and --model, which several subcommands share.
 struct SceneArguments {
   std::string scene;
   std::vector<std::string> overrides;
+  std::string model;
 };
 void add_scene(CLI::App& command, SceneArguments& arguments);
 }  // namespace tape::tapesim

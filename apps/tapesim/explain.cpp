@@ -16,7 +16,8 @@ struct Line {
 /// "file:line" of a key of the scene, or of the section or name that it comes with (film.poisson: film); empty for defaults.
 std::string place(const cosim::SceneFile& file, std::string key) {
   for (std::string where;;) {
-    for (const std::string& name : {key, key + "s"})  // strip, or strips
+    const std::string of_roll = key == "strip" || key == "bodies.hub" ? "roll" : key;
+    for (const std::string& name : {key, key + "s", of_roll})  // strip, or strips, or what makes them
       if (where = file.where(name); !where.empty()) return where;
     if (key.find('.') == std::string::npos) return "";
     key.resize(key.rfind('.'));
@@ -53,7 +54,7 @@ std::vector<Line> stages(const World& world) {
 }
 
 int explain(const SceneArguments& arguments, const std::string& backend_name) {
-  const LoadedWorld loaded = load_world(arguments);
+  const LoadedWorld loaded = load_world(arguments, Rolls::as_known);
   if (backend_name == "cuda" && !cuda_available()) throw InputError("--backend cuda: no CUDA device answers, or this build has no CUDA");
   const std::string backend = backend_name == "cpu" || !cuda_available() ? "cpu" : "cuda";
   std::vector<Line> lines;

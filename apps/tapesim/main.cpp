@@ -14,6 +14,7 @@ namespace tape::tapesim {
 void add_scene(CLI::App& command, SceneArguments& arguments) {
   command.add_option("SCENE", arguments.scene, "scene file (YAML)")->required();
   command.add_option("--set", arguments.overrides, "set a key of the scene: path.to.key=value; may be repeated")->allow_extra_args(false);
+  command.add_option("--model", arguments.model, "how the interfaces inside a roll adhere: coh-f (cohesion) or bond-f (bonds)");
 }
 
 namespace {
@@ -22,7 +23,7 @@ void require_command(const CLI::App& app, const std::string& word) {
   std::set<std::string, std::less<>> names;
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) names.insert(command->get_name());
   if (word.starts_with('-') || names.contains(word)) return;
-  if (word == "wind" || word == "replay") throw InputError(word + ": not in this build");
+  if (word == "replay") throw InputError(word + ": not in this build");
   throw InputError(word + ": no such command; " + cosim::suggestion(word, names));
 }
 
@@ -35,6 +36,12 @@ int act(const Action& chosen) {
   } catch (const InputError& e) {
     say("", e);
     return kBadInput;
+  } catch (const NumericalError& e) {
+    say("", e);
+    return kNumericalFailure;
+  } catch (const Interrupted& e) {
+    say("", e);
+    return kInterrupted;
   } catch (const std::bad_alloc& e) {
     say("out of memory: ", e);
     return kBadInput;
@@ -56,7 +63,7 @@ int main(int argc, char** argv) {
   app.failure_message(
       [](const CLI::App*, const CLI::Error& e) { return fmt::format("tapesim: {}\nRun with --help for more information.\n", e.what()); });
   Action chosen;
-  for (const auto add : {add_run, add_explain, add_check, add_study, add_render, add_info}) add(app, chosen);
+  for (const auto add : {add_run, add_explain, add_wind, add_check, add_study, add_render, add_info}) add(app, chosen);
   return act([&] {
     if (argc > 1) require_command(app, argv[1]);
     try {

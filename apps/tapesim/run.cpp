@@ -74,6 +74,7 @@ std::string shell_word(const std::string& text) {
 void print_how_to_resume(const RunArguments& arguments, const State& state, const RunFolder& folder) {
   std::string options;
   for (const std::string& one : arguments.scene.overrides) options += " --set " + shell_word(one);
+  if (!arguments.scene.model.empty()) options += " --model " + arguments.scene.model;
   if (arguments.backend != "auto") options += " --backend " + arguments.backend;
   if (arguments.video) options += " --video";
   fmt::print("stopped after step {}. To go on:\n  tapesim run {} --resume {} --out {}{}\n", state.step, shell_word(arguments.scene.scene),
@@ -101,7 +102,7 @@ State resumed(const std::string& file, const World& world) {
 int run(const RunArguments& arguments) {
   set_threads(arguments.threads);
   const Backend backend = backend_of(arguments.backend);
-  const LoadedWorld loaded = load_world(arguments.scene);
+  const LoadedWorld loaded = load_world(arguments.scene, Rolls::settle);
   if (arguments.video) require_video(loaded.input.pictures);
   const std::unique_ptr<Stepper> stepper = make_stepper(backend, loaded.world);
   State state = arguments.resume.empty() ? State::start(loaded.world) : resumed(arguments.resume, loaded.world);

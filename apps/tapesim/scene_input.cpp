@@ -1,5 +1,12 @@
 #include "apps/tapesim/scene_input.hpp"
 
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "apps/tapesim/interrupt.hpp"
+#include "apps/tapesim/progress.hpp"
+#include "cosim/roll/roll_store.hpp"
 #include "cosim/run/figures.hpp"
 
 namespace tape::tapesim {
@@ -12,17 +19,37 @@ World build_world(const Setup& setup, const std::string& file) {
     throw InputError(file + ": " + e.what());
   }
 }
+
+void settle(cosim::RunInput& run, const std::string& file, Rolls rolls) {
+  if (!run.settle_roll) return;
+  std::unique_ptr<Progress> progress;
+  cosim::RollOptions options{.asset = run.roll_asset, .wind = rolls == Rolls::settle};
+  options.go_on = [&](const std::string& strip, int steps, Real speed) {
+    if (!progress) progress = std::make_unique<Progress>("wind " + strip, SettleParams{}.max_steps);
+    progress->update(steps, fmt::format("{:.2g} m/s", speed));
+    return !interrupted();
+  };
+  if (rolls == Rolls::settle) remember_interrupts();
+  try {
+    cosim::settle_rolls(run.setup, options);
+  } catch (const InputError& e) {
+    throw InputError(file + ": " + e.what());
+  }
+}
 }  // namespace
 
 SceneInput load_scene(const SceneArguments& arguments) {
-  SceneInput input{cosim::read_run(cosim::SceneFile::load(arguments.scene, arguments.overrides)), {}};
+  std::vector<std::string> overrides = arguments.overrides;
+  if (!arguments.model.empty()) overrides.push_back("model=" + arguments.model);
+  SceneInput input{cosim::read_run(cosim::SceneFile::load(arguments.scene, overrides)), {}};
   input.pictures = read_pictures(input.run.file.root());
   input.run.file.require_all_used();
   return input;
 }
 
-LoadedWorld load_world(const SceneArguments& arguments) {
+LoadedWorld load_world(const SceneArguments& arguments, Rolls rolls) {
   SceneInput input = load_scene(arguments);
+  settle(input.run, arguments.scene, rolls);
   World world = build_world(input.run.setup, arguments.scene);
   try {
     cosim::require_figures(input.run.figures, world);

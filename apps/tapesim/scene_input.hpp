@@ -16,6 +16,8 @@ struct LoadedWorld {
   SceneInput input;
   World world;
 };
+/// Rolls come to rest first, unless only those are wanted that have done so before.
+enum class Rolls { settle, as_known };
 /// @throws InputError also for figures that do not fit the scene, and for an initial state that cannot be
-LoadedWorld load_world(const SceneArguments& arguments);
+LoadedWorld load_world(const SceneArguments& arguments, Rolls rolls);
 }  // namespace tape::tapesim

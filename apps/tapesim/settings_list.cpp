@@ -47,6 +47,8 @@ std::string settings_text() {
   report::Table table{{"key", "default", "unit", "allowed", "meaning"}, {}};
   add<TimeParams>(table, "time");
   add<StripParams>(table, "strip");
+  add<WindingParams>(table, "roll");
+  add<Core>(table, "roll.core");
   add<Film>(table, "film");
   add<Material>(table, "materials.NAME");
   add<PairCohesion>(table, "interfaces.N (per_pair)");

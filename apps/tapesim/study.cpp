@@ -32,9 +32,9 @@ struct StudyRun {
 };
 
 LoadedWorld load_combination(const Study& study, const std::vector<std::string>& values) {
-  SceneArguments arguments{study.scene.string(), study.overrides};
+  SceneArguments arguments{.scene = study.scene.string(), .overrides = study.overrides, .model = {}};
   for (std::size_t k = 0; k < values.size(); ++k) arguments.overrides.push_back(study.grid[k].first + "=" + values[k]);
-  return load_world(arguments);
+  return load_world(arguments, Rolls::settle);
 }
 
 /// Runs a combination. A numerical failure is a result; bad input is an error of the study.

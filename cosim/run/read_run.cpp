@@ -4,7 +4,7 @@
 
 namespace cosim {
 RunInput read_run(SceneFile scene) {
-  RunInput input{.file = std::move(scene), .setup = {}, .record = {}, .figures = {}};
+  RunInput input{.file = std::move(scene), .setup = {}, .record = {}, .figures = {}, .roll_asset = {}};
   const SceneFile& file = input.file;
   input.setup.scene = read_scene(file);
   std::vector<std::string> effects;
@@ -17,6 +17,12 @@ RunInput read_run(SceneFile scene) {
   file.read("solver", input.setup.linear);
   file.read("record", input.record);
   if (const Reader figures = file["record"]["figures"]) input.figures = figures.texts();
+  const Reader roll = file["roll"];
+  input.settle_roll = roll["settle"].flag_or(true);
+  if (const Reader asset = roll["asset"]) {
+    if (!input.settle_roll) asset.fail("of no use where settle is off");
+    input.roll_asset = file.path().parent_path() / asset.text();
+  }
   return input;
 }
 }  // namespace cosim

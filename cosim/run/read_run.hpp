@@ -13,6 +13,8 @@ struct RunInput {
   Setup setup;
   RecordParams record;
   std::vector<std::string> figures;
+  bool settle_roll = true;           ///< off: a roll starts as it is wound
+  std::filesystem::path roll_asset;  ///< empty: none is named
 };
 /// Reads the scene, the settings of every effect and of the solver, `effects` (switches) and `record`. Whoever reads more
 /// sections does so from `file`, then calls its `require_all_used`.

@@ -5,6 +5,7 @@
 
 #include "cosim/scene/bodies.hpp"
 #include "cosim/scene/pose.hpp"
+#include "cosim/scene/roll.hpp"
 #include "cosim/scene/script.hpp"
 #include "tape/model/strip_mesh.hpp"
 
@@ -31,6 +32,7 @@ class SceneReader {
     strips();
     bodies();
     for (const Reader& entry : file_["interfaces"].items()) interface(entry);
+    model();
     read_script(file_["script"], meshes_, scene_);
     if (scene_.strips.empty() && scene_.bodies.empty()) file_.root().fail("there is nothing to simulate: neither a strip nor a body");
     return std::move(scene_);
@@ -56,6 +58,26 @@ class SceneReader {
     scene_.materials.push_back({name});
     return static_cast<int>(scene_.materials.size()) - 1;
   }
+  /// The model decides how the interfaces inside a roll adhere, over what they say.
+  void model() {
+    const Reader chosen = file_["model"];
+    if (!chosen) return;
+    scene_.model = chosen.choice<tape::Model>();
+    bool roll = false;
+    for (tape::AdhesivePair& pair : scene_.adhesives) {
+      if (!inside_roll(pair.a, pair.b)) continue;
+      pair.adhesion.law = *scene_.model == tape::Model::bond_f ? tape::AdhesionLaw::bond : tape::AdhesionLaw::per_pair;
+      roll = true;
+    }
+    if (!roll) chosen.fail("the scene has no roll whose interfaces adhere");
+  }
+  /// Whether these materials are those of a roll and its hub.
+  bool inside_roll(int a, int b) const {
+    return std::any_of(scene_.strips.begin(), scene_.strips.end(), [&](const Strip& s) {
+      const auto part = [&](int m) { return m == s.material || m == scene_.bodies[static_cast<std::size_t>(s.winding->hub)].material; };
+      return s.winding && part(a) && part(b);
+    });
+  }
   void claim_name(const std::string& name, const Reader& where) const {
     if (name.find_first_of(". ") != std::string::npos) where.fail("a name holds neither dots nor spaces");
     const auto same = [&](const auto& object) { return object.name == name; };
@@ -64,12 +86,32 @@ class SceneReader {
   }
 
   void strips() {
-    const Reader one = file_["strip"], list = file_["strips"];
+    const Reader one = file_["strip"], list = file_["strips"], roll = file_["roll"];
     if (one && list) list.fail("give either strip or strips");
-    if (one) strip(one);
+    if (roll) {
+      wound_strip(one, roll);
+    } else if (one) {
+      strip(one);
+    }
     for (const Reader& entry : list.items()) strip(entry);
   }
   void strip(const Reader& section) {
+    Strip& strip = add_strip(section);
+    section.read(strip.mesh);
+    strip.pose = read_pose(section);
+    for (const Reader& piece : section["path"].items()) strip.path.push_back(path_piece(piece));
+    strip.velocity = section["velocity"].vector_or(strip.velocity, kPlace, "m/s");
+    mesh_strip(section);
+  }
+  void wound_strip(const Reader& section, const Reader& roll) {
+    Strip& strip = add_strip(section);
+    claim_name("hub", roll);
+    read_roll(roll, section, scene_, strip);
+    scene_.bodies.back().material = material(roll["core"]["material"].text_or("default"));
+    mesh_strip(roll);
+  }
+  /// What every strip has: name, film, material.
+  Strip& add_strip(const Reader& section) {
     Strip strip;
     const std::size_t count = scene_.strips.size();
     const Reader name = section["name"];
@@ -81,17 +123,17 @@ class SceneReader {
     } else if (!file_["film"]) {
       file_["film"].fail("missing; the name of a film in data/tapes");
     }
-    section.read(strip.mesh);
-    strip.pose = read_pose(section);
-    for (const Reader& piece : section["path"].items()) strip.path.push_back(path_piece(piece));
-    strip.velocity = section["velocity"].vector_or(strip.velocity, kPlace, "m/s");
     strip.material = material(section["material"].text_or("default"));
+    return scene_.strips.emplace_back(std::move(strip));
+  }
+  /// @param section  where its settings stand
+  void mesh_strip(const Reader& section) {
+    const Strip& strip = scene_.strips.back();
     try {
       meshes_.push_back(make_strip_mesh(strip.mesh, scene_.films[strip.film].width, scene_.seed));
     } catch (const InputError& e) {
       section.fail(e.what());
     }
-    scene_.strips.push_back(std::move(strip));
   }
   static tape::PathPiece path_piece(const Reader& piece) {
     const Reader line = piece["line"], arc = piece["arc"];
@@ -123,7 +165,9 @@ class SceneReader {
     if (mu) for_each_pair(first, second, [&, value = mu.number(Range::non_negative(), "")](int a, int b) { set_friction(a, b, value); });
     if (!law) return;
     tape::AdhesivePair adhesive;
-    adhesive.adhesion = adhesion(entry, law.choice<tape::AdhesionLaw>());
+    bool roll = false;
+    for_each_pair(first, second, [&](int a, int b) { roll |= inside_roll(a, b); });
+    adhesive.adhesion = adhesion(entry, law.choice<tape::AdhesionLaw>(), roll);
     for_each_pair(first, second, [&](int a, int b) {
       adhesive.a = a, adhesive.b = b;
       if (!of_strip(a) && !of_strip(b)) entry["between"].fail("names no strip: only tape sticks");
@@ -133,13 +177,15 @@ class SceneReader {
       set_adhesion(adhesive);
     });
   }
-  static tape::Adhesion adhesion(const Reader& entry, tape::AdhesionLaw law) {
-    tape::Adhesion out{.law = law, .sticks = {}, .pair = {}, .bond = {}};
-    if (law == tape::AdhesionLaw::bond) {
+  /// @param roll  it is one inside a roll: the settings of all laws that a model may choose stand beside each other
+  static tape::Adhesion adhesion(const Reader& entry, tape::AdhesionLaw law, bool roll) {
+    tape::Adhesion out{.law = law, .sticks = {}, .pair = {}, .area = {}, .bond = {}};
+    if (law == tape::AdhesionLaw::bond || roll) {
       entry.read(out.bond);
       if (out.bond.floor >= out.bond.reach) entry["floor"].fail("not below reach: no pair would ever bond");
     }
-    if (law == tape::AdhesionLaw::per_pair) {
+    if (law == tape::AdhesionLaw::per_area) entry.read(out.area);
+    if (law == tape::AdhesionLaw::per_pair || roll) {
       entry.read(out.pair);
       if (out.pair.beta0 == 0 && out.pair.gamma == 0) entry["gamma"].fail("0 with beta0 = 0: no pair would ever engage");
     }

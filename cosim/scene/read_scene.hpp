@@ -3,8 +3,8 @@
 #include "tape/model/scene.hpp"
 
 namespace cosim {
-/// Everything of a scene file that a tape::Scene holds: scene, film, time, contact, gravity, seed, strip or strips, bodies, materials,
-/// interfaces, script. README.md describes them.
+/// Everything of a scene file that a tape::Scene holds: scene, film, time, contact, gravity, seed, strip or strips, roll, bodies,
+/// materials, interfaces, script. README.md describes them.
 /// @throws InputError "file:line: key = value: reason"
 tape::Scene read_scene(const SceneFile& file);
 

@@ -48,7 +48,7 @@ void add_strip(Assembly& a, const Scene& scene, const Strip& strip) {
 }
 
 BodyMass body_mass(const Body& body, Vec3& centre) {
-  const MassProperties unit = mass_properties(body.mesh);
+  const MassProperties unit = body.solid ? *body.solid : mass_properties(body.mesh);
   if (!(unit.volume > 0)) throw InputError("body '" + body.name + "': a dynamic body needs a closed mesh with outward normals");
   centre = unit.centre;
   const Real density = body.mass > 0 ? body.mass / unit.volume : body.density;

@@ -18,6 +18,16 @@ class SettingsError : public InputError {
       : InputError(key + " = " + value + ": allowed is " + allowed), path(key) {}
   std::string path;  ///< the key
 };
+/// What was asked for has no numerical answer, or none was found. The program prints it and exits with 1.
+class NumericalError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+/// The user wants it to end. The program exits with 130.
+class Interrupted : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 /// A broken invariant: our mistake, not the user's.
 class CheckFailed : public std::logic_error {
  public:

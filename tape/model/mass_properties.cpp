@@ -1,5 +1,7 @@
 #include "tape/model/mass_properties.hpp"
 
+#include <numbers>
+
 namespace tape {
 MassProperties mass_properties(const TriangleMesh& mesh) {
   MassProperties m;
@@ -21,6 +23,14 @@ MassProperties mass_properties(const TriangleMesh& mesh) {
   const Vec3 offset = first / m.volume;
   m.centre = origin + offset;
   m.second -= m.volume * offset * offset.transpose();
+  return m;
+}
+
+MassProperties ring_properties(Real inner_radius, Real outer_radius, Real height) {
+  const Real inner2 = inner_radius * inner_radius, outer2 = outer_radius * outer_radius;
+  MassProperties m;
+  m.volume = std::numbers::pi * (outer2 - inner2) * height;
+  m.second.diagonal() = m.volume * Vec3((inner2 + outer2) / 4, (inner2 + outer2) / 4, height * height / 12);
   return m;
 }
 }  // namespace tape

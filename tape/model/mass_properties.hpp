@@ -11,4 +11,6 @@ struct MassProperties {
 /// Exact for the polyhedron: a sum over the tetrahedra that its triangles form with a common point.
 /// Assumes a closed, consistently oriented mesh.
 MassProperties mass_properties(const TriangleMesh& mesh);
+/// Of a cylinder with a bore, exact; axis z, about its middle.
+MassProperties ring_properties(Real inner_radius, Real outer_radius, Real height);
 }  // namespace tape

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -7,7 +8,9 @@
 #include "tape/core/settings.hpp"
 #include "tape/model/adhesion.hpp"
 #include "tape/model/film.hpp"
+#include "tape/model/mass_properties.hpp"
 #include "tape/model/triangle_mesh.hpp"
+#include "tape/model/winding.hpp"
 
 namespace tape {
 enum class MeshPattern { same, alternating, crossed, irregular };
@@ -74,7 +77,14 @@ struct Strip {
   std::vector<PathPiece> path;   ///< empty: straight. Shorter than the strip: goes on straight
   Vec3 velocity = Vec3::Zero();  ///< [m/s]
   int material = 0;              ///< index into Scene::materials
+  /// A wound strip follows this instead of `path`; `pose` is that of the roll, the axis y.
+  std::optional<Winding> winding = {};
+  std::vector<Vec3> settled = {};  ///< [vertices] m, in the frame of `pose`: where a roll came to rest; empty: as the winding says
 };
+
+/// How the interfaces inside a roll adhere: the paper's full-shell models with cohesion or bonds.
+enum class Model { coh_f, bond_f };
+constexpr auto enum_names(Model) { return std::array<std::string_view, 2>{"coh-f", "bond-f"}; }
 
 /// Prescribed pose at a time; motion.hpp says how a body moves between two of them.
 struct Waypoint {
@@ -96,6 +106,8 @@ struct Body {
   std::vector<Waypoint> waypoints;       ///< of a driven body, times ascending; none: it keeps its velocities
   Real xi = 0;                           ///< [m] half-thickness in contact
   int material = 0;                      ///< index into Scene::materials
+  /// Of the shape that the mesh stands for, in the mesh's frame; none: those of the mesh itself.
+  std::optional<MassProperties> solid = {};
 };
 
 struct Material {
@@ -143,6 +155,7 @@ struct Scene {
   ContactParams contact;
   Vec3 gravity = Vec3(0, 0, -9.81);  ///< [m/s^2]
   int seed = 1;
+  std::optional<Model> model = {};  ///< of the rolls, over what their interfaces say
   std::vector<Film> films;
   std::vector<Strip> strips;
   std::vector<Body> bodies;

@@ -141,6 +141,32 @@ StripMesh turned_lattice(const Grid& grid, Real angle) {
   number_by_x(mesh);
   return mesh;
 }
+
+/// Piece of a centreline from arc length s on.
+struct Arc {
+  Real s, heading;  // [m], [rad]
+  Vec2 point;       // [m] along and normal
+  Real curvature;   // [1/m]
+  Vec2 at(Real ds) const {
+    const Real half = curvature * ds / 2, chord = std::fabs(half) > 1e-8 ? ds * std::sin(half) / half : ds;
+    return point + chord * Vec2(std::cos(heading + half), std::sin(heading + half));
+  }
+};
+/// The last one is straight.
+std::vector<Arc> arcs_of(const std::vector<PathPiece>& path) {
+  std::vector<Arc> arcs{{0, 0, Vec2::Zero(), 0}};
+  for (const PathPiece& piece : path) {
+    Arc& now = arcs.back();
+    now.curvature = piece.turn / piece.length;
+    arcs.push_back({now.s + piece.length, now.heading + piece.turn, now.at(piece.length), 0});
+  }
+  return arcs;
+}
+Vec2 point_on(const std::vector<Arc>& arcs, Real s) {
+  auto arc = arcs.end() - 1;
+  while (arc != arcs.begin() && arc->s > s) --arc;
+  return arc->at(s - arc->s);
+}
 }  // namespace
 
 Real cell_length(const StripParams& params, Real width) { return make_grid(params, width).cell().x(); }
@@ -164,27 +190,17 @@ StripMesh make_strip_mesh(const StripParams& params, Real width, int seed) {
 }
 
 std::vector<Vec3> place(const StripMesh& mesh, const Strip& strip) {
-  struct Start {
-    Real s, heading;  // [m], [rad]
-    Vec2 point;       // [m] along and normal
-    Real curvature;   // [1/m]
-    Vec2 at(Real ds) const {
-      const Real half = curvature * ds / 2, chord = std::fabs(half) > 1e-8 ? ds * std::sin(half) / half : ds;
-      return point + chord * Vec2(std::cos(heading + half), std::sin(heading + half));
-    }
-  };
-  std::vector<Start> pieces{{0, 0, Vec2::Zero(), 0}};
-  for (const PathPiece& piece : strip.path) {
-    Start& now = pieces.back();
-    now.curvature = piece.turn / piece.length;
-    pieces.push_back({now.s + piece.length, now.heading + piece.turn, now.at(piece.length), 0});
+  if (!strip.settled.empty()) {
+    if (strip.settled.size() != mesh.rest.size()) throw InputError("strip '" + strip.name + "': its settled positions are of another mesh");
+    std::vector<Vec3> x;
+    for (const Vec3& p : strip.settled) x.push_back(apply(strip.pose, p));
+    return x;
   }
+  const std::vector<Arc> arcs = arcs_of(strip.path);
   std::vector<Vec3> x;
   x.reserve(mesh.rest.size());
   for (const Vec2& rest : mesh.rest) {
-    auto piece = pieces.end() - 1;
-    while (piece != pieces.begin() && piece->s > rest.x()) --piece;
-    const Vec2 p = piece->at(rest.x() - piece->s);
+    const Vec2 p = strip.winding ? strip.winding->at(rest.x()) : point_on(arcs, rest.x());
     x.push_back(apply(strip.pose, {p.x(), rest.y(), p.y()}));
   }
   return x;

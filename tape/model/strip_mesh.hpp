@@ -19,8 +19,10 @@ Real cell_length(const StripParams& params, Real width);
 /// @throws InputError if the settings cannot be meshed (such as a grid angle without pattern `same`)
 StripMesh make_strip_mesh(const StripParams& params, Real width, int seed);
 
-/// Positions [n] m of the strip at the start: its centreline follows `strip.path`, cross-sections stay straight.
-/// The centreline keeps its length along the arcs; chords of cells are shorter by the factor sin(a)/a, a = cell/(2 radius).
+/// Positions [n] m of the strip at the start: settled ones, or its centreline follows `strip.path` or `strip.winding` and cross-sections
+/// stay straight.
+/// The centreline keeps its length along the arcs of a path; chords of cells are shorter by the factor sin(a)/a, a = cell/(2 radius).
+/// @throws InputError if it settled on another mesh
 std::vector<Vec3> place(const StripMesh& mesh, const Strip& strip);
 
 /// Vertices with x in [from, to] m, in order.

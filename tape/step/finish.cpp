@@ -45,6 +45,7 @@ void finish_step(const World& world, const State& before, const State& after, Re
   for (std::size_t b = 0; b < after.bodies.size(); ++b) {
     const BodyState& body = after.bodies[b];
     const BodyMass& mass = a.bodies[b].mass;
+    report.body_pose.push_back(body.pose);
     report.body_force.push_back(mass.mass * ((body.velocity - before.bodies[b].velocity) / dt - world.setup.scene.gravity));
     if (!(mass.mass > 0)) continue;
     const Mat3 inertia = body.pose.rotation * inertia_tensor(mass.second) * body.pose.rotation.transpose();

@@ -36,6 +36,7 @@ constexpr const char* kReals = "reals";
 constexpr const char* kIntegers = "integers";
 constexpr const char* kHash = "state_hash";
 constexpr const char* kWorld = "world_hash";
+constexpr const char* kSettings = "settings";
 
 /// The state as two flat arrays, in a fixed order.
 struct Flat {
@@ -117,7 +118,7 @@ std::vector<T> read_array(hid_t file, const char* name, hid_t type) {
   return values;
 }
 
-void write_file(const std::string& name, const World& world, const State& state, const Flat& flat) {
+void write_file(const std::string& name, const World& world, const State& state, const Flat& flat, const std::string& settings) {
   const Handle file(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
   if (file < 0) throw InputError("cannot create it");
   const std::string hash = state.hash(), world_id = world_hash(world);
@@ -125,20 +126,30 @@ void write_file(const std::string& name, const World& world, const State& state,
   write_array(file, kIntegers, H5T_NATIVE_INT64, flat.integers.data(), flat.integers.size());
   write_array(file, kHash, H5T_NATIVE_CHAR, hash.data(), hash.size());
   write_array(file, kWorld, H5T_NATIVE_CHAR, world_id.data(), world_id.size());
+  write_array(file, kSettings, H5T_NATIVE_CHAR, settings.data(), settings.size());
   if (H5Fflush(file, H5F_SCOPE_GLOBAL) < 0) throw InputError("cannot write it out");
+}
+
+/// @throws InputError if there is no such file, or it is none of HDF5
+Handle open_snapshot(const std::string& file) {
+  silence_hdf5();
+  if (!std::filesystem::exists(file)) throw InputError(file + ": no such file");
+  const hid_t h5 = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (h5 < 0) throw InputError(file + ": not a snapshot, or truncated");
+  return {h5, H5Fclose};
 }
 
 std::string as_text(const std::vector<char>& c) { return {c.begin(), c.end()}; }
 }  // namespace
 
-void save_snapshot(const std::string& file, const World& world, const State& state) {
+void save_snapshot(const std::string& file, const World& world, const State& state, const std::string& settings) {
   silence_hdf5();
   State copy = state;
   Flat flat;
   visit_state(copy, Write{flat});
   const std::string temporary = file + ".tmp";
   try {
-    write_file(temporary, world, state, flat);
+    write_file(temporary, world, state, flat, settings);
     std::filesystem::rename(temporary, file);
   } catch (const std::exception& e) {
     std::error_code ignored;
@@ -147,12 +158,18 @@ void save_snapshot(const std::string& file, const World& world, const State& sta
   }
 }
 
+std::string snapshot_settings(const std::string& file) {
+  const Handle h5 = open_snapshot(file);
+  try {
+    return as_text(read_array<char>(h5, kSettings, H5T_NATIVE_CHAR));
+  } catch (const InputError& e) {
+    throw InputError(file + ": not a snapshot: " + e.what());
+  }
+}
+
 State load_snapshot(const std::string& file, const World& world) {
-  silence_hdf5();
   const auto refuse = [&](const std::string& why) { throw InputError(file + ": not a snapshot of this scene: " + why); };
-  if (!std::filesystem::exists(file)) throw InputError(file + ": no such file");
-  const Handle h5(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-  if (h5 < 0) throw InputError(file + ": not a snapshot, or truncated");
+  const Handle h5 = open_snapshot(file);
   State state = State::start(world);
   try {
     if (as_text(read_array<char>(h5, kWorld, H5T_NATIVE_CHAR)) != world_hash(world)) refuse("its strips and bodies differ");

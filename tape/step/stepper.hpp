@@ -63,6 +63,7 @@ struct StepReport {
   std::vector<AdhesionReport> adhesion;  ///< [Scene::adhesives]
   std::vector<Vec3> grip_force;          ///< [grips] N that the grip exerts on what it holds
   std::vector<Vec3> body_force;          ///< [bodies] N of contact and grips on the body (driven and dynamic)
+  std::vector<Pose> body_pose;           ///< [bodies] X_WB at the end
   Real wall_ms = 0;
 };
 

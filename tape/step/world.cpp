@@ -7,6 +7,7 @@
 #include "tape/contact/intersection.hpp"
 #include "tape/math/rotation.hpp"
 #include "tape/model/motion.hpp"
+#include "tape/step/roll_gaps.hpp"
 
 namespace tape {
 SurfaceMesh make_surface(const Scene& scene, const Assembly& a);  // surface_mesh.cpp
@@ -44,6 +45,7 @@ World World::build(Setup setup) {
   world.assembly = assemble(setup.scene);
   world.surface = make_surface(setup.scene, world.assembly);
   world.setup = std::move(setup);
+  check_rolls(world.setup.scene, world.assembly, world.surface, world.assembly.x);
   check_start(world.assembly.x, world.surface, world.setup.scene.dhat());
   check_nothing_inside(world.assembly.x, world.surface);
   return world;
@@ -64,6 +66,7 @@ State State::start(const World& world) {
     for (int v : grip.vertices) state.grip_base.push_back(world.assembly.x[static_cast<std::size_t>(v)]);
     state.grip_closed.push_back(0);
   }
+  state.memory = world.setup.memory;
   return state;
 }
 

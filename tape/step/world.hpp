@@ -19,6 +19,7 @@ struct Setup {
   std::map<std::string, bool> forced;  ///< effects that the scene turns on or off whatever it needs
   NewtonParams newton;
   LinearParams linear;
+  EffectMemory memory = {};  ///< what adheres at the start, apart from what else is in the contact band
 };
 
 /// One line of the effect plan.
@@ -74,7 +75,10 @@ struct Drive {
 void close_grips(const World& world, State& state);
 
 /// Writes and reads the state exactly (HDF5, by a temporary name), with what is needed to refuse a snapshot of another scene.
-void save_snapshot(const std::string& file, const World& world, const State& state);
+/// @param settings  text that goes with it
+void save_snapshot(const std::string& file, const World& world, const State& state, const std::string& settings = "");
+/// The text that a snapshot was saved with.  @throws InputError if the file is missing or no snapshot
+std::string snapshot_settings(const std::string& file);
 /// @throws InputError if the file is missing, truncated, or of another scene
 State load_snapshot(const std::string& file, const World& world);
 }  // namespace tape

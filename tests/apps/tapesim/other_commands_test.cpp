@@ -71,6 +71,20 @@ TEST_F(Check, SaysThatASceneIsSoundAndWritesNothing) {
   EXPECT_THAT(outcome.out, HasSubstr("sound"));
   EXPECT_EQ(folder.names(), std::vector<std::string>{"small.yaml"});
 }
+TEST_F(Check, TellsTheGapsOfARoll) {
+  const std::string roll = folder.file("roll.yaml", "film: vinyl_19mm\nroll: {turns: 2}\n");
+  EXPECT_THAT(line_of(tapesim({"check", roll}).out, "roll"),
+              ContainsRegex("'tape': pitch 0.00018 m, gaps from .* to the hub .* between layers"));
+  EXPECT_THAT(tapesim({"check", roll, "--set", "roll.pitch=4e-4"}).out, HasSubstr("lower roll.pitch"));
+  const Outcome crossed = tapesim({"check", roll, "--set", "strip.cell_length=0.005"});
+  EXPECT_EQ(crossed.exit_code, 2);
+  EXPECT_THAT(crossed.err, ContainsRegex("roll.yaml: roll 'tape': turn .* cross: raise roll.pitch"));
+}
+TEST_F(Explain, NamesTheRollThatMakesStripAndHub) {
+  const Outcome outcome = tapesim({"explain", folder.file("roll.yaml", "film: vinyl_19mm\nroll: {turns: 1}\n")});
+  EXPECT_THAT(line_of(outcome.out, "membrane"), ContainsRegex("on .*roll.yaml:2"));
+  EXPECT_THAT(line_of(outcome.out, "body_inertia"), ContainsRegex("on .*roll.yaml:2"));
+}
 TEST_F(Info, TellsVersionBackEndsThreadsAndBuild) {
   const Outcome outcome = tapesim({"info"});
   ASSERT_EQ(outcome.exit_code, 0);

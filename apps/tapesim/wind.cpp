@@ -1,0 +1,79 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include "apps/report/table.hpp"
+#include "apps/tapesim/interrupt.hpp"
+#include "apps/tapesim/progress.hpp"
+#include "apps/tapesim/scene_input.hpp"
+#include "cosim/roll/roll_figures.hpp"
+#include "cosim/roll/settled_roll.hpp"
+
+namespace tape::tapesim {
+namespace {
+struct WindArguments {
+  std::string film, core, sense = "left", out;
+  double turns = 0;
+  std::vector<std::string> overrides;
+};
+
+/// The scene of a roll and nothing else; --set changes it as that of any scene.
+std::string scene_text(const WindArguments& a) {
+  std::string text = fmt::format("film: {}\nroll: {{turns: {}, sense: {}}}\n", std::filesystem::absolute(a.film).string(), a.turns, a.sense);
+  text += "interfaces:\n";
+  for (const char* to : {"tape", "hub"}) text += fmt::format("  - {{between: [tape.sticky, {}], law: per_pair, beta0: 1}}\n", to);
+  return text;
+}
+
+cosim::RunInput read(const WindArguments& a) {
+  std::vector<std::string> overrides;
+  if (!a.core.empty()) {
+    const cosim::SceneFile core = cosim::SceneFile::load(a.core);
+    Core settings;
+    core.root().read(settings);
+    core.require_all_used();
+    settings.fields([&](const char* name, auto& value, const char*, Range, const char*) {
+      overrides.push_back(fmt::format("roll.core.{}={}", name, value));
+    });
+  }
+  overrides.insert(overrides.end(), a.overrides.begin(), a.overrides.end());
+  cosim::RunInput input = cosim::read_run(cosim::SceneFile::parse(scene_text(a), "roll", overrides));
+  input.file.require_all_used();
+  return input;
+}
+
+int wind(const WindArguments& arguments) {
+  cosim::RunInput input = read(arguments);
+  if (!cosim::holds_together(input.setup.scene, 0)) throw InputError("the tape of this roll does not adhere to itself: it would spring open");
+  remember_interrupts();
+  Progress progress("wind", SettleParams{}.max_steps);
+  SettleParams params;
+  params.go_on = [&](int steps, Real speed) {
+    progress.update(steps, fmt::format("{:.2g} m/s", speed));
+    return !interrupted();
+  };
+  const cosim::SettledRoll roll = cosim::settle_roll(cosim::roll_alone(input.setup, 0), params);
+  if (roll.report.stopped) throw Interrupted("interrupted; nothing was written");
+  if (!roll.report.failure.empty()) throw NumericalError("the roll does not come to rest: " + roll.report.failure);
+  cosim::save_roll(arguments.out, roll);
+  fmt::print("{}: at rest after {} steps, {:.2g} m/s\n", arguments.out, roll.report.steps, roll.report.speed);
+  for (const auto& [name, value] : cosim::roll_figures(roll.world, roll.state, 0)) fmt::print("  {} = {}\n", name, report::rounded(value));
+  return kDone;
+}
+}  // namespace
+
+void add_wind(CLI::App& app, Action& chosen) {
+  auto arguments = std::make_shared<WindArguments>();
+  CLI::App* command = app.add_subcommand("wind", "winds a roll, lets it come to rest and saves it as an asset for `roll.asset` of a scene");
+  command->add_option("FILM", arguments->film, "film (YAML), as data/tapes/vinyl_19mm.yaml")->required();
+  command->add_option("--turns", arguments->turns, "turns of tape around the core")->required();
+  command->add_option("--core", arguments->core, "core (YAML), with the keys of roll.core; default: that of 19-mm vinyl tape");
+  command->add_option("--sense", arguments->sense, "side to which the free end leaves the top")->check(CLI::IsMember({"left", "right"}));
+  command->add_option("--out", arguments->out, "file of the asset")->required();
+  command->add_option("--set", arguments->overrides, "set a key of the roll's scene, as roll.free_length=0.15 or interfaces.0.law=bond")
+      ->allow_extra_args(false);
+  command->callback([=, &chosen] { chosen = [=] { return wind(*arguments); }; });
+}
+}  // namespace tape::tapesim

@@ -1,0 +1,94 @@
+#include "cosim/roll/roll_figures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace cosim {
+namespace {
+/// A strip that is wound on a hub, in a state.
+class Roll {
+ public:
+  Roll(const World& world, const State& state, std::size_t strip)
+      : world_(world), state_(state), tape_(world.assembly.strips[strip]), hub_(world.setup.scene.strips[strip].winding->hub) {}
+
+  /// [m] rest coordinate of the last place that adheres to the tape itself or to the hub.
+  Real end() const {
+    Real last = 0;
+    EffectMemory memory = state_.memory;
+    for_each_memory(memory, [&](const auto& pairs) {
+      for (const VertexTriangle& pair : pairs) {
+        const Index3& triangle = world_.assembly.triangles[static_cast<std::size_t>(pair.triangle)];
+        if (!part(pair.vertex) || !part(triangle[0])) continue;
+        last = std::max({last, along(pair.vertex), along(triangle[0])});
+      }
+    });
+    return last;
+  }
+  /// Seen along the hub's axis, from the axis.
+  Vec2 across(int v) const {
+    const Pose& pose = state_.bodies[static_cast<std::size_t>(hub_)].pose;
+    const Vec3 p = pose.rotation.transpose() * (state_.x[static_cast<std::size_t>(v)] - pose.position);
+    return {p.x(), p.y()};
+  }
+  Real along(int v) const { return tape(v) ? rest(v).x() : 0; }
+  /// Vertices of the strip's first edge and of the rows up to `end`, in order.
+  std::vector<int> edge(Real end) const {
+    std::vector<int> found;
+    for (int v = first(); v < first() + tape_.vertices; ++v)
+      if (rest(v).x() <= end && rest(v).y() < rest(first()).y() + 1e-9) found.push_back(v);
+    std::stable_sort(found.begin(), found.end(), [&](int a, int b) { return rest(a).x() < rest(b).x(); });
+    return found;
+  }
+  std::vector<int> wound(Real end) const {
+    std::vector<int> found;
+    for (int v = first(); v < first() + tape_.vertices; ++v)
+      if (rest(v).x() <= end) found.push_back(v);
+    return found;
+  }
+  Real mass(int v) const { return world_.assembly.mass[static_cast<std::size_t>(v)]; }
+  const Body& hub() const { return world_.setup.scene.bodies[static_cast<std::size_t>(hub_)]; }
+
+ private:
+  int first() const { return tape_.first_vertex; }
+  const Vec2& rest(int v) const { return world_.assembly.rest[static_cast<std::size_t>(v)]; }
+  bool tape(int v) const { return v >= first() && v < first() + tape_.vertices; }
+  bool part(int v) const {
+    const BodyPart& hub = world_.assembly.bodies[static_cast<std::size_t>(hub_)];
+    return tape(v) || (v >= hub.first_vertex && v < hub.first_vertex + hub.vertices);
+  }
+
+  const World& world_;
+  const State& state_;
+  const StripPart& tape_;
+  int hub_;
+};
+}  // namespace
+
+std::vector<std::pair<std::string, Real>> roll_figures(const World& world, const State& state, std::size_t strip) {
+  const Roll roll(world, state, strip);
+  const Real end = roll.end();
+  const Body& hub = roll.hub();
+  const MassProperties& ring = *hub.solid;
+  const Real density = hub.mass > 0 ? hub.mass / ring.volume : hub.density;
+  Real mass = density * ring.volume, inertia = density * (ring.second(0, 0) + ring.second(1, 1)), radius = 0;
+  for (int v : roll.wound(end)) {
+    const Vec2 p = roll.across(v);
+    mass += roll.mass(v);
+    inertia += roll.mass(v) * p.squaredNorm();
+    radius = std::max(radius, p.norm());
+  }
+  Real angle = 0, length = 0;
+  const std::vector<int> edge = roll.edge(end);
+  for (std::size_t k = 1; k < edge.size(); ++k) {
+    const Vec2 a = roll.across(edge[k - 1]), b = roll.across(edge[k]);
+    angle += std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+    length += (b - a).norm();
+  }
+  return {{"turns", std::fabs(angle) / (2 * std::numbers::pi)},
+          {"wound_length_m", length},
+          {"outer_radius_m", radius},
+          {"roll_mass_kg", mass},
+          {"roll_inertia_kg_m2", inertia}};
+}
+}  // namespace cosim

@@ -1,0 +1,91 @@
+#include "cosim/roll/roll_store.hpp"
+
+#include <cstdint>
+#include <cstdlib>
+#include <fstream>
+#include <optional>
+
+#include "cosim/run/new_file.hpp"
+#include "tape/core/error.hpp"
+
+namespace cosim {
+namespace {
+/// 64-bit FNV-1a of bytes, going on from `hash`.
+std::uint64_t fnv(const char* data, std::size_t size, std::uint64_t hash) {
+  for (std::size_t i = 0; i < size; ++i) hash = (hash ^ static_cast<unsigned char>(data[i])) * 0x100000001b3;
+  return hash;
+}
+
+/// Of the program that runs: another build may settle rolls otherwise.
+std::uint64_t program_hash() {
+  static const std::uint64_t hash = [] {
+    std::ifstream file("/proc/self/exe", std::ios::binary);
+    std::uint64_t h = 0xcbf29ce484222325;
+    for (char block[1 << 16]; file.read(block, sizeof block) || file.gcount() > 0;) h = fnv(block, static_cast<std::size_t>(file.gcount()), h);
+    return h;
+  }();
+  return hash;
+}
+
+std::filesystem::path file_of(const std::string& settings) {
+  char name[32];
+  std::snprintf(name, sizeof name, "roll-%016llx.h5",
+                static_cast<unsigned long long>(fnv(settings.data(), settings.size(), program_hash())));
+  return roll_store() / name;
+}
+
+/// A file of the store that cannot be read is as good as none.
+std::optional<SettledRoll> stored(const std::filesystem::path& file, const Setup& alone) {
+  if (!std::filesystem::exists(file)) return {};
+  try {
+    return load_roll(file, alone);
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
+SettledRoll wound(const Setup& alone, const std::string& name, const RollOptions& options) {
+  SettleParams params;
+  if (options.go_on) params.go_on = [&](int steps, Real speed) { return options.go_on(name, steps, speed); };
+  SettledRoll roll = settle_roll(alone, params);
+  if (roll.report.stopped) throw Interrupted("roll '" + name + "': interrupted while it settled");
+  if (!roll.report.failure.empty()) throw NumericalError("roll '" + name + "' does not come to rest: " + roll.report.failure);
+  return roll;
+}
+
+/// Without room for it the next run winds again.
+void keep(const std::filesystem::path& file, const SettledRoll& roll) {
+  try {
+    make_folder(file.parent_path());
+    save_roll(file, roll);
+  } catch (const InputError&) {
+  }
+}
+}  // namespace
+
+std::filesystem::path roll_store() {
+  const auto variable = [](const char* name) {
+    const char* value = std::getenv(name);
+    return std::filesystem::path(value ? value : "");
+  };
+  if (const auto folder = variable("TAPE_CACHE"); !folder.empty()) return folder;
+  if (const auto folder = variable("XDG_CACHE_HOME"); !folder.empty()) return folder / "tape";
+  if (const auto folder = variable("HOME"); !folder.empty()) return folder / ".cache" / "tape";
+  return std::filesystem::temp_directory_path() / "tape";
+}
+
+void settle_rolls(Setup& setup, const RollOptions& options) {
+  for (std::size_t s = 0; s < setup.scene.strips.size(); ++s) {
+    if (!holds_together(setup.scene, s)) continue;
+    const Setup alone = roll_alone(setup, s);
+    if (!options.asset.empty()) {
+      place_roll(load_roll(options.asset, alone), s, setup);
+      continue;
+    }
+    const std::filesystem::path file = file_of(roll_settings(alone));
+    std::optional<SettledRoll> roll = stored(file, alone);
+    if (!roll && options.wind) keep(file, roll.emplace(wound(alone, setup.scene.strips[s].name, options)));
+    if (roll) place_roll(*roll, s, setup);
+  }
+}
+}  // namespace cosim
