@@ -33,8 +33,10 @@ Json settings_json(const Setup& setup) {
     json["strips"][strip.name]["cell_length"] = cell_length(strip.mesh, film.width);  // whole cells
     json["strips"][strip.name]["film"] = film.name;
     if (strip.winding)
-      json["strips"][strip.name]["winding"] = {
-          {"radius", strip.winding->radius}, {"pitch", strip.winding->pitch}, {"turns", strip.winding->turns}};
+      json["strips"][strip.name]["winding"] = {{"radius", strip.winding->radius},
+                                               {"pitch", strip.winding->pitch},
+                                               {"turns", strip.winding->turns},
+                                               {"settled", !strip.settled.empty()}};
   }
   for (const Material& material : scene.materials) json["materials"][material.name] = {{"mu", material.mu}};
   for (const FrictionPair& pair : scene.frictions)
@@ -57,7 +59,7 @@ Json report_json(const Provenance& provenance, const World& world, const RunSumm
   if (!s.failure.empty()) json["failure"] = s.failure;
   json["scene"] = world.setup.scene.name;
   json["scene_file"] = provenance.scene_file;
-  json["model"] = nullptr;  // of a roll; this scene has none
+  json["model"] = world.setup.scene.model ? Json(to_text(*world.setup.scene.model)) : Json();
   json["backend"] = provenance.backend;
   json["threads"] = provenance.threads;
   json["version"] = provenance.version;

@@ -36,6 +36,10 @@ std::vector<Line> stages(const World& world) {
   const auto on = [&](std::string_view effect) {
     return std::any_of(world.plan.begin(), world.plan.end(), [&](const PlanLine& line) { return line.name == effect && line.on; });
   };
+  std::string remembering;
+  for_each_effect([&]<class T>(std::type_identity<T>) {
+    if (Remembers<T> && on(T::name)) remembering += (remembering.empty() ? "" : ", ") + std::string(T::name);
+  });
   const bool contact = on(Barrier::name);
   const std::string why = contact ? "barrier" : "barrier is off";
   return {
@@ -45,7 +49,7 @@ std::vector<Line> stages(const World& world) {
       {"assembly", true, "every step"},
       {"linear_solver", true, "solver.linear: " + to_text(world.setup.linear.linear)},
       {"line_search", true, "every step"},
-      {"history", false, "no effect of this build remembers"},
+      {"history", !remembering.empty(), remembering.empty() ? "no effect that is on remembers" : remembering},
       {"reduction", false, "not in this build"},
       {"cutting", false, "not in this build"},
       {"sleeping", false, "not in this build"},

@@ -63,11 +63,8 @@ Real capstan_error(const World& world, const cosim::RunLog& log, Real angle) {
 
 Real figure_value(const std::string& key, const World& world, const cosim::RunLog& log) {
   std::vector<std::string> names;
-  for (const cosim::Figure& figure : cosim::all_figures()) {
-    if (figure.name == "tip" && world.assembly.strips.empty()) continue;
-    if (figure.name == "capstan_ratio" && world.setup.scene.grips.size() < 2) continue;
-    names.emplace_back(figure.name);
-  }
+  for (const cosim::Figure& figure : cosim::all_figures())
+    if (cosim::why_unfit(figure.name, world).empty()) names.emplace_back(figure.name);
   std::string known;
   for (const auto& [name, value] : cosim::measure_figures(names, world, log)) {
     if (name == key) return value;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <memory>
 
 #include "apps/report/table.hpp"
@@ -21,7 +22,8 @@ struct WindArguments {
 
 /// The scene of a roll and nothing else; --set changes it as that of any scene.
 std::string scene_text(const WindArguments& a) {
-  std::string text = fmt::format("film: {}\nroll: {{turns: {}, sense: {}}}\n", std::filesystem::absolute(a.film).string(), a.turns, a.sense);
+  std::string text =
+      fmt::format("film: {}\nroll: {{turns: {}, sense: {}}}\n", std::filesystem::absolute(a.film).string(), a.turns, a.sense);
   text += "interfaces:\n";
   for (const char* to : {"tape", "hub"}) text += fmt::format("  - {{between: [tape.sticky, {}], law: per_pair, beta0: 1}}\n", to);
   return text;
@@ -46,7 +48,8 @@ cosim::RunInput read(const WindArguments& a) {
 
 int wind(const WindArguments& arguments) {
   cosim::RunInput input = read(arguments);
-  if (!cosim::holds_together(input.setup.scene, 0)) throw InputError("the tape of this roll does not adhere to itself: it would spring open");
+  if (!cosim::holds_together(input.setup.scene, 0))
+    throw InputError("the tape of this roll does not adhere to itself: it would spring open");
   remember_interrupts();
   Progress progress("wind", SettleParams{}.max_steps);
   SettleParams params;
@@ -59,7 +62,19 @@ int wind(const WindArguments& arguments) {
   if (!roll.report.failure.empty()) throw NumericalError("the roll does not come to rest: " + roll.report.failure);
   cosim::save_roll(arguments.out, roll);
   fmt::print("{}: at rest after {} steps, {:.2g} m/s\n", arguments.out, roll.report.steps, roll.report.speed);
-  for (const auto& [name, value] : cosim::roll_figures(roll.world, roll.state, 0)) fmt::print("  {} = {}\n", name, report::rounded(value));
+  const Scene& scene = roll.world.setup.scene;
+  const Winding& winding = *scene.strips[0].winding;
+  const AxialMass tape = annulus_mass(winding, scene.films[0]);
+  const Body& hub = scene.bodies[0];
+  const std::map<std::string, Real> formula = {{"turns", winding.turns},
+                                               {"wound_length_m", annulus_length(winding)},
+                                               {"outer_radius_m", winding.outer_radius()},
+                                               {"roll_mass_kg", tape.mass + hub.density * hub.solid->volume}};
+  for (const auto& [name, value] : cosim::roll_figures(roll.world, roll.state, 0)) {
+    const auto expected = formula.find(name);
+    fmt::print("  {} = {}{}\n", name, report::rounded(value),
+               expected == formula.end() ? "" : fmt::format(" (as wound: {})", report::rounded(expected->second)));
+  }
   return kDone;
 }
 }  // namespace

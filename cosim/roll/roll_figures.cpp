@@ -20,7 +20,7 @@ class Roll {
       for (const VertexTriangle& pair : pairs) {
         const Index3& triangle = world_.assembly.triangles[static_cast<std::size_t>(pair.triangle)];
         if (!part(pair.vertex) || !part(triangle[0])) continue;
-        last = std::max({last, along(pair.vertex), along(triangle[0])});
+        last = std::max({last, along(pair.vertex), std::min({along(triangle[0]), along(triangle[1]), along(triangle[2])})});
       }
     });
     return last;
@@ -71,19 +71,19 @@ std::vector<std::pair<std::string, Real>> roll_figures(const World& world, const
   const Body& hub = roll.hub();
   const MassProperties& ring = *hub.solid;
   const Real density = hub.mass > 0 ? hub.mass / ring.volume : hub.density;
-  Real mass = density * ring.volume, inertia = density * (ring.second(0, 0) + ring.second(1, 1)), radius = 0;
+  Real mass = density * ring.volume, inertia = density * (ring.second(0, 0) + ring.second(1, 1));
   for (int v : roll.wound(end)) {
     const Vec2 p = roll.across(v);
     mass += roll.mass(v);
     inertia += roll.mass(v) * p.squaredNorm();
-    radius = std::max(radius, p.norm());
   }
-  Real angle = 0, length = 0;
+  Real angle = 0, length = 0, radius = 0;
   const std::vector<int> edge = roll.edge(end);
   for (std::size_t k = 1; k < edge.size(); ++k) {
     const Vec2 a = roll.across(edge[k - 1]), b = roll.across(edge[k]);
     angle += std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
     length += (b - a).norm();
+    if (k + 2 < edge.size()) radius = std::max(radius, b.norm());  // the last two rows stand off already
   }
   return {{"turns", std::fabs(angle) / (2 * std::numbers::pi)},
           {"wound_length_m", length},

@@ -21,7 +21,8 @@ std::uint64_t program_hash() {
   static const std::uint64_t hash = [] {
     std::ifstream file("/proc/self/exe", std::ios::binary);
     std::uint64_t h = 0xcbf29ce484222325;
-    for (char block[1 << 16]; file.read(block, sizeof block) || file.gcount() > 0;) h = fnv(block, static_cast<std::size_t>(file.gcount()), h);
+    for (char block[1 << 16]; file.read(block, sizeof block) || file.gcount() > 0;)
+      h = fnv(block, static_cast<std::size_t>(file.gcount()), h);
     return h;
   }();
   return hash;

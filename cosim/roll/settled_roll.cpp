@@ -6,8 +6,8 @@
 
 namespace cosim {
 namespace {
-/// Steps of a settle [s]: short enough that inertia holds what nothing else does, such as the free end.
-constexpr Real kDt = 0.1;
+/// Steps of a settle [s]: inertia, which is all that holds a free end of some decimetres, must not hold it up.
+constexpr Real kDt = 1;
 /// Newton solves a settling step to this share of the speed that counts as rest.
 constexpr Real kAccuracy = 0.1;
 
@@ -28,11 +28,16 @@ class SettingsText {
  private:
   template <class V>
   static std::string text(const V& value) {
-    if constexpr (std::is_same_v<V, Vec3>) return to_text(value.x()) + " " + to_text(value.y()) + " " + to_text(value.z());
-    else if constexpr (std::is_same_v<V, std::string>) return value;
-    else if constexpr (std::is_same_v<V, bool>) return value ? "on" : "off";
-    else if constexpr (std::is_integral_v<V>) return std::to_string(value);
-    else return to_text(value);
+    if constexpr (std::is_same_v<V, Vec3>)
+      return to_text(value.x()) + " " + to_text(value.y()) + " " + to_text(value.z());
+    else if constexpr (std::is_same_v<V, std::string>)
+      return value;
+    else if constexpr (std::is_same_v<V, bool>)
+      return value ? "on" : "off";
+    else if constexpr (std::is_integral_v<V>)
+      return std::to_string(value);
+    else
+      return to_text(value);
   }
   std::string out_;
 };
@@ -130,14 +135,14 @@ std::string roll_settings(const Setup& alone) {
   text.add("contact", scene.contact);
   const auto name = [&](int m) { return m == tape.material ? m == hub.material ? "tape and hub" : "tape" : "hub"; };
   for (const int a : {tape.material, hub.material})
-    for (const int b : {tape.material, hub.material}) text.line(std::string("mu of ") + name(a) + " on " + name(b), to_text(scene.mu(a, b)));
+    for (const int b : {tape.material, hub.material})
+      text.line(std::string("mu of ") + name(a) + " on " + name(b), to_text(scene.mu(a, b)));
   for (const AdhesivePair& pair : scene.adhesives) {
     const std::string between = std::string(name(pair.a)) + " on " + name(pair.b);
     const Adhesion& a = pair.adhesion;
     text.line(between + ": law", to_text(a.law));
     for (const auto& row : a.sticks) text.line(between + ": faces", std::string(row[0] ? "1" : "0") + (row[1] ? "1" : "0"));
-    if (a.law == AdhesionLaw::per_pair || a.law == AdhesionLaw::bond) text.add(between, a.pair);
-    if (a.law == AdhesionLaw::per_area) text.add(between, a.area);
+    text.add(between, a.pair);  // of bonds too: cohesion settles the roll that they are made in
     if (a.law == AdhesionLaw::bond) text.add(between, a.bond);
   }
   for_each_effect([&]<class T>(std::type_identity<T>) { text.add(std::string(T::name), params<T>(alone.effects)); });

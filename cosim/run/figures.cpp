@@ -3,6 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <numbers>
+
+#include "cosim/roll/roll_figures.hpp"
+#include "cosim/run/summary.hpp"
+#include "tape/model/strip_mesh.hpp"
 
 namespace cosim {
 namespace {
@@ -46,6 +51,13 @@ FigureValues grip_force(const World& world, const RunLog& log) {
   return values;
 }
 
+/// First grip that moves; none: the number of grips.
+std::size_t moving_grip(const Scene& scene) {
+  std::size_t g = 0;
+  while (g < scene.grips.size() && scene.grips[g].motion.empty()) ++g;
+  return g;
+}
+
 FigureValues capstan_ratio(const World&, const RunLog& log) {
   const Real a = settled_force(log, 0).norm(), b = settled_force(log, 1).norm();
   return {{"capstan_ratio", std::max(a, b) / std::min(a, b)}};
@@ -73,6 +85,63 @@ FigureValues max_strain(const World&, const RunLog& log) {
   return {{"max_strain", most}};
 }
 
+/// Strip that is a roll; none: the number of strips.
+std::size_t first_roll(const World& world) {
+  const std::vector<Strip>& strips = world.setup.scene.strips;
+  std::size_t s = 0;
+  while (s < strips.size() && !strips[s].winding) ++s;
+  return s;
+}
+std::size_t hub_of(const World& world) { return static_cast<std::size_t>(world.setup.scene.strips[first_roll(world)].winding->hub); }
+
+FigureValues roll(const World& world, const RunLog& log) { return roll_figures(world, log.end, first_roll(world)); }
+
+/// Turning of the hub about its axis since the start, over the steps from when the last grip of the hub was released.
+FigureValues hub_range(const World& world, const RunLog& log) {
+  const std::size_t hub = hub_of(world);
+  Real from = 0;
+  for (const Grip& grip : world.setup.scene.grips)
+    if (grip.what.object == world.setup.scene.bodies[hub].name && grip.end <= log.end.time) from = std::max(from, grip.end);
+  Mat3 before = log.start.bodies[hub].pose.rotation;
+  Real angle = 0, least = std::numeric_limits<Real>::infinity(), most = -least;
+  for (const StepRow& row : log.rows) {
+    const Mat3 now = row.report.body_pose[hub].rotation, turn = before.transpose() * now;
+    angle += std::atan2(turn(1, 0) - turn(0, 1), turn(0, 0) + turn(1, 1));
+    before = now;
+    if (row.time < from) continue;
+    least = std::min(least, angle), most = std::max(most, angle);
+  }
+  return {{"hub_range_deg", (most - least) * 180 / std::numbers::pi}};
+}
+
+FigureValues hub_travel(const World& world, const RunLog& log) {
+  const std::size_t hub = hub_of(world);
+  return {{"hub_travel_m", (log.end.bodies[hub].pose.position - log.start.bodies[hub].pose.position).norm()}};
+}
+
+/// How far the end of what adheres of the first strip, in its first interface, has moved along the strip.
+FigureValues boundary_advance(const World&, const RunLog& log) {
+  const AdhesionReport &first = log.rows.front().report.adhesion[0], &last = log.rows.back().report.adhesion[0];
+  return {{"boundary_advance_m", first.to - std::max<Real>(last.to, 0)}};
+}
+
+/// Force of the first grip that moves, along its way, while the front of the first interface advances: from one cell on.
+FigureValues peel_force(const World& world, const RunLog& log) {
+  const Scene& scene = world.setup.scene;
+  const std::size_t g = moving_grip(scene);
+  const Vec3 way = scene.grips[g].motion.back().offset.normalized();
+  const Strip& strip = scene.strips[0];
+  const Real cell = cell_length(strip.mesh, scene.films[static_cast<std::size_t>(strip.film)].width);
+  const auto front = [](const StepRow& row) { return row.report.adhesion[0].to; };
+  std::vector<Real> forces;
+  for (const StepRow& row : log.rows)
+    if (front(row) < front(log.rows.front()) - cell / 2 && row.report.adhesion[0].live > 0)
+      forces.push_back(row.report.grip_force[g].dot(way));
+  if (forces.empty()) return {};
+  const Distribution over_steps = distribution(forces);
+  return {{"peel_force_median_N", over_steps.p50}, {"peel_force_mean_N", over_steps.mean}, {"peel_force_max_N", over_steps.max}};
+}
+
 constexpr Figure kFigures[] = {
     {"tip", "where the tip of the first strip ends, from its root: drop along -z, reach across", tip},
     {"grip_force", "force of each grip: mean over the second half of the run, and largest", grip_force},
@@ -80,6 +149,11 @@ constexpr Figure kFigures[] = {
     {"body_travel", "how far each body that is not static ends from where it started", body_travel},
     {"rest_speed", "largest speed of a vertex or body at the end", rest_speed},
     {"max_strain", "largest principal membrane strain of the run", max_strain},
+    {"peel_force", "force of the first grip that moves, along its way, while the first interface peels: median, mean, largest", peel_force},
+    {"boundary_advance", "tape that has come off: way of the end of the first interface along the first strip", boundary_advance},
+    {"hub_range", "range of the hub's turning about its axis since its last grip was released", hub_range},
+    {"hub_travel", "how far the centre of the hub ends from where it started", hub_travel},
+    {"roll", "turns, length, outer radius, mass and inertia of what is wound at the end", roll},
 };
 
 const Figure* find(const std::string& name) {
@@ -99,6 +173,18 @@ Vec3 weights(const std::array<Vec2, 3>& t, const Vec2& p) {
 
 std::span<const Figure> all_figures() { return kFigures; }
 
+std::string why_unfit(std::string_view name, const World& world) {
+  const Scene& scene = world.setup.scene;
+  if (name == "tip" && scene.strips.empty()) return "the scene has no strip";
+  if (name == "capstan_ratio" && scene.grips.size() < 2) return "the scene has fewer than two grips";
+  const bool of_roll = name == "hub_range" || name == "hub_travel" || name == "roll";
+  if (of_roll && first_roll(world) == scene.strips.size()) return "the scene has no roll";
+  const bool of_interface = name == "peel_force" || name == "boundary_advance";
+  if (of_interface && (scene.adhesives.empty() || scene.strips.empty())) return "no strip of the scene adheres";
+  if (name == "peel_force" && moving_grip(scene) == scene.grips.size()) return "no grip of the scene moves";
+  return "";
+}
+
 void require_figures(const std::vector<std::string>& names, const World& world) {
   for (const std::string& name : names) {
     const auto refuse = [&](const std::string& why) { throw InputError(name + ": " + why); };
@@ -107,8 +193,7 @@ void require_figures(const std::vector<std::string>& names, const World& world) 
       for (const Figure& figure : kFigures) known += (known.empty() ? "" : ", ") + std::string(figure.name);
       refuse("there is no such figure; there are " + known);
     }
-    if (name == "tip" && world.assembly.strips.empty()) refuse("the scene has no strip");
-    if (name == "capstan_ratio" && world.setup.scene.grips.size() < 2) refuse("the scene has fewer than two grips");
+    if (const std::string why = why_unfit(name, world); !why.empty()) refuse(why);
   }
 }
 

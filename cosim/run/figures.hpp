@@ -19,6 +19,8 @@ struct Figure {
 /// All of them. Adding one: a function in figures.cpp and its line in the list.
 std::span<const Figure> all_figures();
 
+/// What the scene lacks for a figure; empty if nothing.
+std::string why_unfit(std::string_view name, const World& world);
 /// @throws InputError naming the figure that there is not, or that the scene has nothing to measure on
 void require_figures(const std::vector<std::string>& names, const World& world);
 FigureValues measure_figures(const std::vector<std::string>& names, const World& world, const RunLog& log);

@@ -179,12 +179,11 @@ class SceneReader {
   }
   /// @param roll  it is one inside a roll: the settings of all laws that a model may choose stand beside each other
   static tape::Adhesion adhesion(const Reader& entry, tape::AdhesionLaw law, bool roll) {
-    tape::Adhesion out{.law = law, .sticks = {}, .pair = {}, .area = {}, .bond = {}};
+    tape::Adhesion out{.law = law, .sticks = {}, .pair = {}, .bond = {}};
     if (law == tape::AdhesionLaw::bond || roll) {
       entry.read(out.bond);
       if (out.bond.floor >= out.bond.reach) entry["floor"].fail("not below reach: no pair would ever bond");
     }
-    if (law == tape::AdhesionLaw::per_area) entry.read(out.area);
     if (law == tape::AdhesionLaw::per_pair || roll) {
       entry.read(out.pair);
       if (out.pair.beta0 == 0 && out.pair.gamma == 0) entry["gamma"].fail("0 with beta0 = 0: no pair would ever engage");

@@ -6,8 +6,8 @@
 
 namespace tape {
 /// How an interface sticks.
-enum class AdhesionLaw { none, per_pair, per_area, bond };
-constexpr auto enum_names(AdhesionLaw) { return std::array<std::string_view, 4>{"none", "per_pair", "per_area", "bond"}; }
+enum class AdhesionLaw { none, per_pair, bond };
+constexpr auto enum_names(AdhesionLaw) { return std::array<std::string_view, 3>{"none", "per_pair", "bond"}; }
 
 /// What tangential slip is measured from.
 enum class SlipFrom { step, bonding };
@@ -42,25 +42,6 @@ struct PairCohesion {
   }
 };
 
-/// Cohesion per area, so that the answer does not depend on the mesh: the traction rises linearly with the opening up to `strength`, then
-/// falls linearly to zero where `toughness` has been spent.
-struct AreaCohesion {
-  Real strength = 1e5;
-  Real toughness = 10;
-  Real peak = 0.1;
-  Real shear = 1;
-  Real reach = 1;
-  template <class F>
-  void fields(F&& f) {
-    f("strength", strength, "Pa", Range::positive(), "largest traction");
-    f("toughness", toughness, "J/m^2", Range::positive(), "work to separate a unit of area");
-    f("peak", peak, "1", Range::above(0, 0.99), "opening at the largest traction, as share of that at which all work is spent");
-    f("shear", shear, "1", Range::non_negative(), "weight of squared slip beside squared opening");
-    f("reach", reach, "1", Range::above(0, 1), "gap below which surfaces begin to adhere, in units of dhat");
-  }
-  Real final_opening() const { return 2 * toughness / strength; }  ///< [m] at which all work is spent
-};
-
 /// Releasable bonds of the paper, eq. 4: each replaces contact, friction and cohesion of a vertex-triangle pair.
 struct BondLaw {
   Real kappa_b = 1e6;
@@ -83,7 +64,6 @@ struct Adhesion {
   AdhesionLaw law = AdhesionLaw::none;
   bool sticks[2][2] = {};  ///< [face of the first][face of the second]: which faces adhere to which
   PairCohesion pair;
-  AreaCohesion area;
   BondLaw bond;
 };
 }  // namespace tape

@@ -89,14 +89,22 @@ AxialMass core_mass(const Core& core) {
   return {core.density * ring.volume, core.density * (ring.second(0, 0) + ring.second(1, 1))};
 }
 
+namespace {
+struct Annulus {
+  Real inner, outer;  // [m]
+  explicit Annulus(const Winding& w) : inner(w.radius - (1 - w.climb / Winding::kTurn) * w.pitch / 2), outer(inner + w.turns * w.pitch) {}
+};
+}  // namespace
+
 Real annulus_length(const Winding& winding) {
-  const Real r = winding.radius, R = winding.outer_radius();
-  return kPi * (R * R - r * r) / winding.pitch;
+  const Annulus a(winding);
+  return kPi * (a.outer * a.outer - a.inner * a.inner) / winding.pitch;
 }
 
 AxialMass annulus_mass(const Winding& winding, const Film& film) {
+  const Annulus a(winding);
   const Real line = film.width * film.thickness * film.density;  // [kg/m]
-  const Real r2 = winding.radius * winding.radius, R2 = winding.outer_radius() * winding.outer_radius();
+  const Real r2 = a.inner * a.inner, R2 = a.outer * a.outer;
   return {line * annulus_length(winding), line * kPi * (R2 * R2 - r2 * r2) / (2 * winding.pitch)};
 }
 }  // namespace tape

@@ -49,8 +49,8 @@ struct WindingParams {
 /// ends at the top and leaves it along x; the normal (backing) looks outwards.
 struct Winding {
   static constexpr Real kTurn = 6.283185307179586;
-  Real radius = 0;     ///< [m] where it starts
-  Real pitch = 0;      ///< [m] growth of the radius in a turn
+  Real radius = 0;  ///< [m] where it starts
+  Real pitch = 0;   ///< [m] growth of the radius in a turn
   Real turns = 0;
   Real climb = kTurn;  ///< [rad]
   int hub = -1;        ///< index into Scene::bodies; -1: none
@@ -84,9 +84,10 @@ struct AxialMass {
 /// Of the core as an exact ring.
 MassProperties core_properties(const Core& core);
 AxialMass core_mass(const Core& core);
-/// Of wound tape as an annulus from `radius` r to `outer_radius` R whose layers stand `pitch` p apart; l = width thickness density:
+/// Of wound tape as an annulus from r = radius - (1 - climb/2 pi) p/2 to R = r + turns p, whose layers are `pitch` p thick; l = width
+/// thickness density:
 ///   length pi (R^2 - r^2)/p,  mass l length,  inertia l pi (R^4 - r^4)/(2 p).
-/// That is the integral over r dtheta; the arc length of the spiral exceeds it by half of (p / 2 pi r)^2, one part in a million.
+/// That is the integral over r dtheta for the mean radius of each turn; climbing makes the arc longer by some parts in a hundred thousand.
 Real annulus_length(const Winding& winding);
 AxialMass annulus_mass(const Winding& winding, const Film& film);
 }  // namespace tape

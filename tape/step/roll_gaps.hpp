@@ -13,7 +13,7 @@ struct GapsBelow {
   int apart = 0;  ///< of these, with nothing to stick to: their gap is above dhat
 };
 /// How close a wound strip is to its hub and to itself at the start: true distances of the triangles, whose chords cut into the spiral,
-/// less the half-thicknesses. A spiral around a round hub rises from it, by one pitch in the first turn.
+/// less the half-thicknesses. The first turn leaves the hub where it climbs over the start of the tape.
 struct RollGaps {
   Real smallest = std::numeric_limits<Real>::infinity();  ///< [m] of all pairs of vertex and triangle, edge and edge
   GapsBelow hub;                                          ///< of the first turn to the hub

@@ -13,9 +13,9 @@ struct SettleParams {
 };
 struct SettleReport {
   int steps = 0;
-  Real speed = 0;          ///< [m/s] of the fastest vertex or body in the last step
-  std::string failure{};   ///< why it did not come to rest; empty if it did
-  bool stopped = false;    ///< by go_on
+  Real speed = 0;         ///< [m/s] of the fastest vertex or body in the last step
+  std::string failure{};  ///< why it did not come to rest; empty if it did
+  bool stopped = false;   ///< by go_on
 };
 /// Brings a state to rest: steps that forget all velocities, so that what adheres and what is elastic find their balance without swinging.
 /// The state keeps its step and time.

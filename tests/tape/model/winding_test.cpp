@@ -92,6 +92,26 @@ TEST(Winding, CentrelineIsTheSpiralThatEndsAtTheTop) {
   EXPECT_NEAR(w.at(w.length()).norm(), w.outer_radius(), 1e-15);
 }
 
+TEST(Winding, TurnsAreCirclesJoinedByClimbs) {
+  Winding w = on_the_core(3);
+  w.climb = 0.4;
+  EXPECT_EQ(w.radius_at(0), w.radius);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_NEAR(w.radius_at(2 * kPi * k + 1), w.radius + k * w.pitch, 1e-16);
+    EXPECT_NEAR(w.radius_at(2 * kPi * (k + 1) - 0.2), w.radius + (k + 0.5) * w.pitch, 1e-16);
+  }
+  Real sum = 0;  // circles, and climbs by Simpson's rule
+  for (int k = 0; k < 3; ++k) {
+    const Real r = w.radius + k * w.pitch, slope = w.pitch / w.climb;
+    sum += (2 * kPi - w.climb) * r + integral([&](Real phi) { return std::hypot(r + slope * phi, slope); }, 0, w.climb, 200);
+  }
+  EXPECT_NEAR(w.length(), sum, 1e-12);
+  EXPECT_NEAR(w.length(), annulus_length(w), 5e-5 * sum);
+  for (Real part : {0.0, 0.2, 0.333, 0.9, 1.0}) EXPECT_NEAR(w.arc_at(w.angle(part * w.length())), part * w.length(), 1e-12) << part;
+  EXPECT_LT((w.at(w.length()) - Vec2(0, w.outer_radius())).norm(), 1e-14);
+  EXPECT_LT((w.at(w.length() + 0.01) - Vec2(0.01, w.outer_radius())).norm(), 1e-14);
+}
+
 TEST(Winding, TapeGoesOnStraightAlongTheTangent) {
   const Winding w = on_the_core(8);
   const Vec2 end = w.at(w.length());

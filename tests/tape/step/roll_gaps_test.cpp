@@ -18,12 +18,15 @@ constexpr Real kPi = std::numbers::pi, kInfinity = std::numeric_limits<Real>::in
 constexpr Real kRadius = 0.021235, kPitch = 1.8e-4, kXi = 4.5e-5, kDhat = 1.8e-4, kCore = 0.0211;  // [m]
 constexpr int kSides = 96, kColumns = 7;
 
+/// An Archimedean spiral with rows at equal arc length: its section is easily written down.
 Setup roll_setup(const WindingParams& params, Real cell_length = 0) {
   Setup setup;
   setup.scene.films = {test::vinyl()};
   Strip strip;
   strip.mesh.cell_length = cell_length;
   wind(setup.scene, strip, params, {}, {});
+  strip.winding->climb = Winding::kTurn, strip.winding->cell = 0;
+  strip.mesh.length = strip.winding->length() + params.free_length;
   setup.scene.strips = {strip};
   return setup;
 }

@@ -1,0 +1,137 @@
+#include "cosim/roll/settled_roll.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "cosim/roll/roll_figures.hpp"
+#include "cosim/run/read_run.hpp"
+#include "tape/contact/intersection.hpp"
+
+using namespace tape;
+
+namespace {
+constexpr const char* kRoll = R"(film: vinyl_19mm
+time: {dt: 0.01, duration: 10}
+roll: {turns: 2, free_length: 0.02}
+interfaces:
+  - {between: [tape.sticky, tape], law: per_pair, beta0: 1}
+  - {between: [tape.sticky, hub], law: per_pair, beta0: 1}
+)";
+cosim::RunInput roll_input(const std::vector<std::string>& overrides = {}) {
+  return cosim::read_run(cosim::SceneFile::parse(kRoll, TAPE_SOURCE_DIR "/data/scenes/roll_test.yaml", overrides));
+}
+cosim::SettledRoll settled(const std::vector<std::string>& overrides = {}) {
+  return cosim::settle_roll(cosim::roll_alone(roll_input(overrides).setup, 0), {});
+}
+std::map<std::string, Real> figures(const cosim::SettledRoll& roll) {
+  const auto list = cosim::roll_figures(roll.world, roll.state, 0);
+  return {list.begin(), list.end()};
+}
+/// Largest distance from the axis of the tape that the winding calls wound.
+Real wound_radius(const World& world, const State& state) {
+  const Winding& w = *world.setup.scene.strips[0].winding;
+  const Pose& hub = state.bodies[0].pose;
+  Real most = 0;
+  for (std::size_t v = 0; v < state.x.size(); ++v)
+    if (world.assembly.rest[v].x() < w.wound())
+      most = std::max(most, (hub.rotation.transpose() * (state.x[v] - hub.position)).head<2>().norm());
+  return most;
+}
+struct File {
+  std::filesystem::path path = std::filesystem::temp_directory_path() / ("tape-roll-" + std::to_string(::getpid()) + ".h5");
+  ~File() { std::filesystem::remove(path); }
+};
+}  // namespace
+
+TEST(SettledRoll, ComesToRestAsLongHeavyAndWideAsItWasWound) {
+  for (const std::vector<std::string>& change :
+       {std::vector<std::string>{}, {"roll.turns=8"}, {"roll.sense=right"}, {"interfaces.0.law=bond", "interfaces.1.law=bond"}}) {
+    const cosim::SettledRoll roll = settled(change);
+    ASSERT_EQ(roll.report.failure, "");
+    EXPECT_LE(roll.report.speed, 1e-5);
+    EXPECT_EQ(find_intersections(roll.world.surface, vertex_positions(roll.world, roll.state)).count, 0);
+    const Winding& w = *roll.world.setup.scene.strips[0].winding;
+    const std::map<std::string, Real> f = figures(roll);
+    EXPECT_NEAR(f.at("turns"), w.turns, 0.02) << "rows are 1/42 of a turn apart";
+    EXPECT_NEAR(f.at("wound_length_m") / f.at("turns"), annulus_length(w) / w.turns, 5e-3 * annulus_length(w) / w.turns);
+    EXPECT_NEAR(f.at("outer_radius_m"), w.outer_radius(), 5e-3 * w.outer_radius());
+    const AxialMass core = core_mass({}), tape = annulus_mass(w, roll.world.setup.scene.films[0]);
+    EXPECT_NEAR(f.at("roll_mass_kg"), core.mass + tape.mass, 5e-3 * (core.mass + tape.mass));
+    EXPECT_NEAR(f.at("roll_inertia_kg_m2"), core.inertia + tape.inertia, 5e-3 * (core.inertia + tape.inertia));
+  }
+}
+
+TEST(SettledRoll, StaysWoundWhereItAdheresAndSpringsOpenWhereItDoesNot) {
+  cosim::RunInput input = roll_input({"gravity=[0,0,0]"});
+  cosim::place_roll(settled(), 0, input.setup);
+  for (bool adheres : {true, false}) {
+    tape::Setup setup = input.setup;
+    if (!adheres) setup.scene.adhesives.clear(), setup.memory = {};
+    const World world = World::build(setup);
+    const std::unique_ptr<Stepper> stepper = make_stepper(Backend::cpu, world);
+    State state = State::start(world);
+    const Real before = wound_radius(world, state);
+    for (int i = 0; i < (adheres ? 1000 : 200); ++i) ASSERT_TRUE(stepper->step(state).ok) << i;
+    if (adheres)
+      EXPECT_LT(wound_radius(world, state), 1.02 * before);
+    else
+      EXPECT_GT(wound_radius(world, state), 1.25 * before);
+  }
+}
+
+TEST(SettledRoll, FallsAsOneBodyUntilItTouches) {
+  for (const char* tolerance : {"1e-1", "1e-2", "1e-3"}) {
+    cosim::RunInput input = roll_input({std::string("solver.velocity_tol=") + tolerance});
+    cosim::place_roll(settled(), 0, input.setup);
+    const World world = World::build(input.setup);
+    const std::unique_ptr<Stepper> stepper = make_stepper(Backend::cpu, world);
+    State state = State::start(world);
+    constexpr int kSteps = 20;
+    for (int i = 0; i < kSteps; ++i) ASSERT_TRUE(stepper->step(state).ok);
+    const Real dt = 0.01, fallen = 9.81 * dt * dt * kSteps * (kSteps + 1) / 2;  // implicit Euler
+    EXPECT_NEAR(-state.bodies[0].pose.position.z(), fallen, 0.01 * fallen) << tolerance;
+  }
+}
+
+TEST(SettledRoll, IsKeptToTheBitAndOnlyForItsOwnSettings) {
+  const cosim::SettledRoll roll = settled();
+  const File file;
+  cosim::save_roll(file.path, roll);
+  const cosim::SettledRoll again = cosim::load_roll(file.path, cosim::roll_alone(roll_input().setup, 0));
+  EXPECT_EQ(again.state.hash(), roll.state.hash());
+  EXPECT_EQ(cosim::load_roll(file.path, cosim::roll_alone(roll_input({"solver.velocity_tol=1e-3", "time.dt=0.005"}).setup, 0)).state.hash(),
+            roll.state.hash())
+      << "what concerns the run is not the roll's";
+  try {
+    cosim::load_roll(file.path, cosim::roll_alone(roll_input({"interfaces.0.cn=2"}).setup, 0));
+    ADD_FAILURE() << "accepted";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("cn = 1, the scene says"), std::string::npos) << e.what();
+  }
+}
+
+TEST(SettledRoll, AdheresInASceneAsItDidAlone) {
+  const cosim::SettledRoll roll = settled();
+  cosim::RunInput input = cosim::read_run(cosim::SceneFile::parse(
+      std::string(kRoll) +
+          "bodies: {table: {shape: box, size: [1, 1, 0.1], position: [0, 0, -1]}}\nstrips: [{length: 0.05, position: [1, 1, 1]}]\n",
+      TAPE_SOURCE_DIR "/data/scenes/roll_test.yaml", {"roll.position=[0.1,0.2,0.3]", "roll.rotation_deg=[30,40,50]"}));
+  cosim::place_roll(roll, 0, input.setup);
+  const World world = World::build(input.setup);
+  const State state = State::start(world);
+  const auto& alone = std::get<MemoryOf<Cohesion>>(roll.state.memory).pairs;
+  const auto& placed = std::get<MemoryOf<Cohesion>>(state.memory).pairs;
+  ASSERT_EQ(placed.size(), alone.size());
+  const std::vector<Vec3> x = vertex_positions(world, state), x_alone = vertex_positions(roll.world, roll.state);
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    const auto distance = [](const World& w, const std::vector<Vec3>& at, const VertexTriangle& m) {
+      return (at[m.vertex] - at[w.assembly.triangles[m.triangle][0]]).norm();
+    };
+    ASSERT_NEAR(distance(world, x, placed[i]), distance(roll.world, x_alone, alone[i]), 1e-14);
+    ASSERT_EQ(placed[i].beta, alone[i].beta);
+  }
+}
