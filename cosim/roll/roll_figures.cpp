@@ -83,7 +83,7 @@ std::vector<std::pair<std::string, Real>> roll_figures(const World& world, const
     const Vec2 a = roll.across(edge[k - 1]), b = roll.across(edge[k]);
     angle += std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
     length += (b - a).norm();
-    if (k + 2 < edge.size()) radius = std::max(radius, b.norm());  // the last two rows stand off already
+    if (k + 1 < edge.size()) radius = std::max(radius, b.norm());  // the last row may stand off already
   }
   return {{"turns", std::fabs(angle) / (2 * std::numbers::pi)},
           {"wound_length_m", length},
