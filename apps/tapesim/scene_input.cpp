@@ -22,21 +22,26 @@ World build_world(const Setup& setup, const std::string& file) {
 
 void settle(cosim::RunInput& run, const std::string& file, Rolls rolls) {
   if (!run.settle_roll) return;
-  std::unique_ptr<Progress> progress;
-  cosim::RollOptions options{.asset = run.roll_asset, .wind = rolls == Rolls::settle};
-  options.go_on = [&](const std::string& strip, int steps, Real speed) {
-    if (!progress) progress = std::make_unique<Progress>("wind " + strip, SettleParams{}.max_steps);
-    progress->update(steps, fmt::format("{:.2g} m/s", speed));
-    return !interrupted();
-  };
-  if (rolls == Rolls::settle) remember_interrupts();
   try {
-    cosim::settle_rolls(run.setup, options);
+    cosim::settle_rolls(run.setup, {.asset = run.roll_asset, .wind = rolls == Rolls::settle, .settle = watched_settle()});
   } catch (const InputError& e) {
     throw InputError(file + ": " + e.what());
   }
 }
 }  // namespace
+
+SettleParams watched_settle() {
+  SettleParams params;
+  params.go_on = [progress = std::shared_ptr<Progress>(), last = params.max_steps](int steps, Real speed) mutable {
+    if (!progress) {
+      remember_interrupts();
+      progress = std::make_shared<Progress>("wind", last);
+    }
+    progress->update(steps, fmt::format("{:.2g} m/s", speed));
+    return !interrupted();
+  };
+  return params;
+}
 
 SceneInput load_scene(const SceneArguments& arguments) {
   std::vector<std::string> overrides = arguments.overrides;

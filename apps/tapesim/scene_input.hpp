@@ -2,8 +2,12 @@
 #include "apps/tapesim/commands.hpp"
 #include "apps/tapesim/pictures.hpp"
 #include "cosim/run/read_run.hpp"
+#include "tape/step/settle.hpp"
 
 namespace tape::tapesim {
+/// For a roll that settles: a progress bar, and an end by Ctrl-C.
+SettleParams watched_settle();
+
 /// All of a scene file: the simulation, and the pictures of it.
 struct SceneInput {
   cosim::RunInput run;

@@ -1,13 +1,10 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <memory>
 
 #include "apps/report/table.hpp"
-#include "apps/tapesim/interrupt.hpp"
-#include "apps/tapesim/progress.hpp"
 #include "apps/tapesim/scene_input.hpp"
 #include "cosim/roll/roll_figures.hpp"
 #include "cosim/roll/settled_roll.hpp"
@@ -50,16 +47,7 @@ int wind(const WindArguments& arguments) {
   cosim::RunInput input = read(arguments);
   if (!cosim::holds_together(input.setup.scene, 0))
     throw InputError("the tape of this roll does not adhere to itself: it would spring open");
-  remember_interrupts();
-  Progress progress("wind", SettleParams{}.max_steps);
-  SettleParams params;
-  params.go_on = [&](int steps, Real speed) {
-    progress.update(steps, fmt::format("{:.2g} m/s", speed));
-    return !interrupted();
-  };
-  const cosim::SettledRoll roll = cosim::settle_roll(cosim::roll_alone(input.setup, 0), params);
-  if (roll.report.stopped) throw Interrupted("interrupted; nothing was written");
-  if (!roll.report.failure.empty()) throw NumericalError("the roll does not come to rest: " + roll.report.failure);
+  const cosim::SettledRoll roll = cosim::settle_roll(cosim::roll_alone(input.setup, 0), watched_settle());
   cosim::save_roll(arguments.out, roll);
   fmt::print("{}: at rest after {} steps, {:.2g} m/s\n", arguments.out, roll.report.steps, roll.report.speed);
   const Scene& scene = roll.world.setup.scene;

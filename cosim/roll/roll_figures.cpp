@@ -34,9 +34,11 @@ class Roll {
   Real along(int v) const { return tape(v) ? rest(v).x() : 0; }
   /// Vertices of the strip's first edge and of the rows up to `end`, in order.
   std::vector<int> edge(Real end) const {
+    Real side = 0;
+    for (int v : wound(end)) side = std::min(side, rest(v).y());
     std::vector<int> found;
-    for (int v = first(); v < first() + tape_.vertices; ++v)
-      if (rest(v).x() <= end && rest(v).y() < rest(first()).y() + 1e-9) found.push_back(v);
+    for (int v : wound(end))
+      if (rest(v).y() < side + 1e-9) found.push_back(v);
     std::stable_sort(found.begin(), found.end(), [&](int a, int b) { return rest(a).x() < rest(b).x(); });
     return found;
   }

@@ -45,15 +45,6 @@ std::optional<SettledRoll> stored(const std::filesystem::path& file, const Setup
   }
 }
 
-SettledRoll wound(const Setup& alone, const std::string& name, const RollOptions& options) {
-  SettleParams params;
-  if (options.go_on) params.go_on = [&](int steps, Real speed) { return options.go_on(name, steps, speed); };
-  SettledRoll roll = settle_roll(alone, params);
-  if (roll.report.stopped) throw Interrupted("roll '" + name + "': interrupted while it settled");
-  if (!roll.report.failure.empty()) throw NumericalError("roll '" + name + "' does not come to rest: " + roll.report.failure);
-  return roll;
-}
-
 /// Without room for it the next run winds again.
 void keep(const std::filesystem::path& file, const SettledRoll& roll) {
   try {
@@ -85,7 +76,7 @@ void settle_rolls(Setup& setup, const RollOptions& options) {
     }
     const std::filesystem::path file = file_of(roll_settings(alone));
     std::optional<SettledRoll> roll = stored(file, alone);
-    if (!roll && options.wind) keep(file, roll.emplace(wound(alone, setup.scene.strips[s].name, options)));
+    if (!roll && options.wind) keep(file, roll.emplace(settle_roll(alone, options.settle)));
     if (roll) place_roll(*roll, s, setup);
   }
 }

@@ -1,7 +1,4 @@
 #pragma once
-#include <functional>
-#include <string>
-
 #include "cosim/roll/settled_roll.hpp"
 
 namespace cosim {
@@ -12,11 +9,10 @@ std::filesystem::path roll_store();
 struct RollOptions {
   std::filesystem::path asset = {};  ///< file that the scene names; empty: the store, or winding
   bool wind = true;                  ///< false: rolls that are not in the store stay as they are wound
-  /// As in SettleParams, with the name of the strip.
-  std::function<bool(const std::string&, int, Real)> go_on = {};
+  SettleParams settle = {};
 };
 /// Puts settled rolls in the place of all rolls of a setup that adhesion holds together. What was wound is kept in the store, under a hash
 /// of its settings and of this program.
-/// @throws InputError if the asset does not fit, NumericalError if a roll does not come to rest, Interrupted if go_on said so
+/// @throws InputError if the asset does not fit; as settle_roll
 void settle_rolls(Setup& setup, const RollOptions& options);
 }  // namespace cosim

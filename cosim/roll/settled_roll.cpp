@@ -4,6 +4,8 @@
 #include <sstream>
 #include <type_traits>
 
+#include "tape/core/error.hpp"
+
 namespace cosim {
 namespace {
 /// Steps of a settle [s]: inertia, which is all that holds a free end of some decimetres, must not hold it up.
@@ -109,9 +111,12 @@ SettledRoll settle_roll(const Setup& alone, const SettleParams& params) {
     if (params.go_on) go_on.go_on = [&](int steps, Real speed) { return params.go_on(before + steps, speed); };
     roll.report = settle(*stepper, roll.state, go_on);
     roll.report.steps += before;
+    const std::string name = "roll '" + alone.scene.strips[0].name + "'";
+    if (roll.report.stopped) throw Interrupted(name + ": interrupted while it settled");
+    if (!roll.report.failure.empty()) throw NumericalError(name + " does not come to rest: " + roll.report.failure);
   };
   run();
-  if (!bonded || !roll.report.failure.empty() || roll.report.stopped) return roll;
+  if (!bonded) return roll;
   Setup with_bonds = alone;
   with_bonds.scene.strips[0].settled = roll.state.x;
   roll.world = World::build(with_bonds);

@@ -22,6 +22,7 @@ struct SettledRoll {
 };
 /// Winds a roll and lets it come to rest. Bonds are made from the gaps of the roll that cohesion has settled, and settle again.
 /// @param alone  of roll_alone
+/// @throws NumericalError if it does not come to rest, Interrupted if params.go_on said so
 SettledRoll settle_roll(const Setup& alone, const SettleParams& params);
 
 /// Everything that decides how a roll settles, one setting a line.

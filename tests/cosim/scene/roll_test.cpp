@@ -110,7 +110,7 @@ TEST(RollSection, MistakesAreRefusedByFileLineAndKey) {
       {"roll.core.inner_diameter=0.05", "wound.yaml:2: roll: roll.core.inner_diameter = 0.05 m: the core has no wall"},
       {"roll.pitch=9e-5", "wound.yaml:2: roll: roll.pitch = 9e-05 m: the layers touch (allowed: > 9e-05 m"},
       {"strip.cell_length=1e-6", "wound.yaml:2: roll: strip: "},
-      {"roll.turns=900", "wound.yaml:2: roll: strip: 182510 x 6 cells"},
+      {"roll.turns=900", " x 6 cells (allowed: 5e+05 together); strip.length"},
       {"film=~", "film: missing"},
   };
   for (const auto& [change, words] : overridden) {

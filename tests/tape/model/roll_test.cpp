@@ -57,8 +57,11 @@ TEST(Roll, ChordsBetweenItsRowsAreAsLongAsAtRest) {
   int rows = 0;
   for (int i = 0; (i + 1) * cell < w.wound(); ++i, ++rows) {
     const Real a = w.angle(i * cell), b = w.angle((i + 1) * cell), left = 2 * kPi - std::fmod(a, 2 * kPi);
-    const bool bends = left > w.climb && 2 * kPi - std::fmod(b, 2 * kPi) < w.climb;  // into or out of a climb
-    const Real tolerance = bends || left < b - a ? 6e-4 : 4e-5;
+    const bool bends = left < b - a || (left > w.climb && left - (b - a) < w.climb);  // into or out of a climb
+    // The mean radius of a turn is pitch/2 off at most: of (cell/2 r)^2/6 that is pitch/r. A kink of pitch/(climb r) adds up to a quarter
+    // of its product with the turning cell/r of the cell.
+    const Real turning = cell / w.radius, kink = bends ? w.pitch / (w.climb * w.radius) * turning / 4 : 0;
+    const Real tolerance = turning * turning / 24 * 2 * w.pitch / w.radius + kink;
     EXPECT_NEAR((roll.x[(i + 1) * 7] - roll.x[i * 7]).norm(), cell, tolerance * cell) << i << "; rows at equal arc length: 9e-4 shorter";
   }
   EXPECT_GT(rows, 300);
