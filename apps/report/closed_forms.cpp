@@ -49,4 +49,9 @@ ElasticaTip heavy_elastica(Real gamma) {
 }
 
 Real capstan_ratio(Real mu, Real angle) { return std::exp(mu * angle); }
+
+Real peel_force(Real toughness, Real angle, Real stretch) {
+  const Real turn = 1 - std::cos(angle), relative = 2 * toughness / stretch;
+  return stretch * relative / (turn + std::sqrt(turn * turn + relative));
+}
 }  // namespace tape::report

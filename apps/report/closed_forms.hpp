@@ -19,4 +19,8 @@ ElasticaTip heavy_elastica(Real gamma);
 /// Ratio of the pulls at the two ends of a band that slides around a cylinder: exp(mu angle).
 /// @param mu  [1] friction  @param angle  [rad] of contact
 Real capstan_ratio(Real mu, Real angle);
+
+/// Force per width F/b [N/m] that peels an elastic film off, from (F/b)^2/(2 E h) + (F/b)(1 - cos angle) = R.  Source: [Kendall 1975].
+/// @param toughness  [J/m^2] R  @param angle  [rad]  @param stretch  [N/m] E h
+Real peel_force(Real toughness, Real angle, Real stretch);
 }  // namespace tape::report

@@ -84,6 +84,11 @@ class Studio {
       if (mesh.strip_vertices > 0) std::fill(force.begin() + mesh.strip_vertices, force.end(), std::numeric_limits<Real>::quiet_NaN());
       return force;
     }
+    if (params_.view.color == ColorBy::adhesion) {
+      std::vector<Real> engagement = frame.engagement;
+      engagement.resize(x.size(), std::numeric_limits<Real>::quiet_NaN());
+      return engagement;
+    }
     return report::vertex_strain(mesh.triangles, mesh.rest, x, mesh.strip_vertices);
   }
 
@@ -99,6 +104,10 @@ class Studio {
       largest.push_back(0);
       for (const Real value : values(frame, x))
         if (value > largest.back()) largest.back() = value;
+    }
+    if (params_.view.color == ColorBy::adhesion) {
+      bar_ = {"adhesion left (beta; bond: 1)", "", 0, 1};
+      return;
     }
     const bool strain = params_.view.color == ColorBy::strain;
     const cosim::Distribution peaks = cosim::distribution(largest);

@@ -56,8 +56,9 @@ void add_render(CLI::App& app, Action& chosen) {
   command->add_option("RUNDIR", arguments->folder, "folder of a run; its state.h5 is read")->required();
   command->add_option("--camera", arguments->camera,
                       "YAML file with eye, target, up, fov, or with fx, fy, cx, cy, width, height, position, rotation");
-  command->add_option("--color", arguments->color, "material, strain or contact_force")
-      ->check(CLI::IsMember({"material", "strain", "contact_force"}));
+  std::vector<std::string> colors;
+  for (std::string_view name : enum_names(render::ColorBy{})) colors.emplace_back(name);
+  command->add_option("--color", arguments->color, "what colours mean")->check(CLI::IsMember(colors));
   command
       ->add_option("--still", arguments->stills,
                    "instead of the video: a PNG of this recorded state; may be repeated; negative counts from the end")

@@ -52,6 +52,7 @@ std::string settings_text() {
   add<Film>(table, "film");
   add<Material>(table, "materials.NAME");
   add<PairCohesion>(table, "interfaces.N (per_pair)");
+  add<AreaCohesion>(table, "interfaces.N (per_area)");
   add<BondLaw>(table, "interfaces.N (bond)");
   add<ContactParams>(table, "contact");
   add<NewtonParams>(table, "solver");

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
 
 #include "apps/report/plot.hpp"
@@ -55,29 +56,48 @@ StudyRun run_one(const Study& study, const std::vector<std::string>& values) {
   return result;
 }
 
+/// Runs that are compared with one another, in order: those that agree in the keys of `of_each`.
+std::vector<std::vector<StudyRun*>> groups_of(const Study& study, std::vector<StudyRun>& runs) {
+  std::map<std::vector<std::string>, std::vector<StudyRun*>> by_values;
+  for (StudyRun& run : runs) {
+    std::vector<std::string> values;
+    for (std::size_t key : study.reference.of_each) values.push_back(run.values[key]);
+    by_values[values].push_back(&run);
+  }
+  std::vector<std::vector<StudyRun*>> groups;
+  for (auto& [values, group] : by_values) groups.push_back(std::move(group));
+  return groups;
+}
+
 void find_errors(const Study& study, std::vector<StudyRun>& runs) {
   const bool finest = study.reference.kind == Reference::Kind::finest;
-  if (finest && !runs.back().measurable()) throw InputError("study " + study.name + ": the finest run failed: " + runs.back().failure);
-  std::vector<Real> seconds, errors;
-  for (StudyRun& run : runs) {
-    if (run.measurable() && &run != (finest ? &runs.back() : nullptr))
-      run.error = finest ? distance(study.reference, run.measured, runs.back().measured) : run.measured.error;
-    seconds.push_back(run.seconds);
-    errors.push_back(run.error);
+  for (const std::vector<StudyRun*>& group : groups_of(study, runs)) {
+    const StudyRun& last = *group.back();
+    if (finest && !last.measurable()) throw InputError("study " + study.name + ": the finest run failed: " + last.failure);
+    std::vector<Real> seconds, errors;
+    for (StudyRun* run : group) {
+      if (run->measurable() && !(finest && run == &last))
+        run->error = finest ? distance(study.reference, run->measured, last.measured) : run->measured.error;
+      seconds.push_back(run->seconds);
+      errors.push_back(run->error);
+    }
+    const std::vector<bool> front = report::pareto_front(seconds, errors);
+    for (std::size_t i = 0; i < group.size(); ++i) group[i]->pareto = front[i];
   }
-  const std::vector<bool> front = report::pareto_front(seconds, errors);
-  for (std::size_t i = 0; i < runs.size(); ++i) runs[i].pareto = front[i];
 }
 
 report::Table make_table(const Study& study, const std::vector<StudyRun>& runs, std::string (*number)(double)) {
   report::Table table;
   table.columns.push_back("run");
   for (const auto& [key, values] : study.grid) table.columns.push_back(key);
+  const bool has_value = study.reference.kind == Reference::Kind::finest && study.reference.measure != "state";
+  if (has_value) table.columns.push_back(study.reference.measure);
   for (const char* column : {"error", "seconds", "newton_per_step", "conditions_not_met", "pareto", "note"})
     table.columns.push_back(column);
   for (const StudyRun& run : runs) {
     std::vector<std::string> row = {std::to_string(table.rows.size() + 1)};
     row.insert(row.end(), run.values.begin(), run.values.end());
+    if (has_value) row.push_back(run.measurable() ? number(run.measured.value) : "");
     const std::string note = run.failure.empty() && std::isnan(run.error) ? "finest" : run.failure;
     for (const std::string& cell : {std::isnan(run.error) ? "" : number(run.error), number(run.seconds), number(run.newton),
                                     std::to_string(run.unmet), std::string(run.pareto ? "*" : ""), note})

@@ -61,6 +61,19 @@ Real capstan_error(const World& world, const cosim::RunLog& log, Real angle) {
   return std::abs(ratio / report::capstan_ratio(mu, angle) - 1);
 }
 
+Real kendall_error(const World& world, const cosim::RunLog& log, Real angle) {
+  if (const std::string why = cosim::why_unfit("peel_force", world); !why.empty()) throw InputError("kendall: " + why);
+  const Scene& scene = world.setup.scene;
+  const Adhesion& first = scene.adhesives[0].adhesion;
+  if (first.law != AdhesionLaw::per_area)
+    throw InputError("kendall: the law of the first interface must be per_area, which has a toughness");
+  const Film& film = scene.films[static_cast<std::size_t>(scene.strips[0].film)];
+  const Real exact = film.width * report::peel_force(first.area.toughness, angle, film.membrane_modulus * film.thickness);
+  for (const auto& [name, value] : cosim::measure_figures({"peel_force"}, world, log))
+    if (name == "peel_force_mean_N") return std::abs(value / exact - 1);
+  throw InputError("kendall: nothing was peeled");
+}
+
 Real figure_value(const std::string& key, const World& world, const cosim::RunLog& log) {
   std::vector<std::string> names;
   for (const cosim::Figure& figure : cosim::all_figures())
@@ -81,6 +94,8 @@ Measured measure(const Reference& reference, const World& world, const cosim::Ru
     measured.error = elastica_error(world, log);
   } else if (reference.kind == Reference::Kind::capstan) {
     measured.error = capstan_error(world, log, reference.angle);
+  } else if (reference.kind == Reference::Kind::kendall) {
+    measured.error = kendall_error(world, log, reference.angle);
   } else if (reference.measure == "state") {
     if (world.assembly.strips.empty()) throw InputError("measure = state: the scene has no strip");
     measured.middle_line = cosim::middle_line(world, log.end, 101);
@@ -103,6 +118,8 @@ std::string error_label(const Reference& reference) {
       return "error of tip drop and reach / length, against the exact curve";
     case Reference::Kind::capstan:
       return "relative error of the pull ratio, against exp(mu angle)";
+    case Reference::Kind::kendall:
+      return "relative error of the mean peel force, against Kendall's";
     case Reference::Kind::finest:
       break;
   }

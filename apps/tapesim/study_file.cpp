@@ -8,17 +8,18 @@ namespace tape::tapesim {
 namespace {
 constexpr Real kMostRuns = 1000;
 
-Reference read_reference(const cosim::SceneFile& file) {
+Reference read_reference(const cosim::SceneFile& file, const std::vector<std::string>& grid_keys) {
   const cosim::Reader against = file["against"], form = against["closed_form"], finest = against["finest"];
   Reference reference;
   if (form.exists() == finest.exists()) against.fail("needs either closed_form: NAME or finest: true");
   if (finest) {
     if (!finest.flag()) finest.fail("can only be true");
     reference.measure = file["measure"].text_or("state");
+    for (const cosim::Reader& key : against["of_each"].items()) reference.of_each.push_back(cosim::choose(key, grid_keys));
     return reference;
   }
-  reference.kind = static_cast<Reference::Kind>(cosim::choose(form, {"heavy_elastica", "capstan"}));
-  if (reference.kind == Reference::Kind::capstan)
+  reference.kind = static_cast<Reference::Kind>(cosim::choose(form, {"heavy_elastica", "capstan", "kendall"}));
+  if (reference.kind != Reference::Kind::heavy_elastica)
     reference.angle = against["angle_deg"].number(Range::above(0, 3600), "deg") * std::numbers::pi / 180;
   return reference;
 }
@@ -59,7 +60,7 @@ Study load_study(const std::filesystem::path& path, const std::vector<std::strin
   Real runs = 1;
   for (const auto& [key, values] : study.grid) runs *= static_cast<Real>(values.size());
   if (runs > kMostRuns) grid.fail("asks for " + tape::to_text(runs) + " runs (allowed: at most " + tape::to_text(kMostRuns) + ")");
-  study.reference = read_reference(file);
+  study.reference = read_reference(file, grid.keys());
   file.require_all_used();
   return study;
 }

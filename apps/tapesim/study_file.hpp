@@ -9,10 +9,11 @@
 namespace tape::tapesim {
 /// What runs of a study are measured against.
 struct Reference {
-  enum class Kind { heavy_elastica, capstan, finest };
+  enum class Kind { heavy_elastica, capstan, kendall, finest };
   Kind kind = Kind::finest;
-  Real angle = 0;       ///< [rad] of contact, for the capstan
-  std::string measure;  ///< with `finest`: key of a figure, or "state" for the largest distance of middle lines [m]
+  Real angle = 0;                      ///< [rad] of contact (capstan) or of the peel (kendall)
+  std::string measure;                 ///< with `finest`: key of a figure, or "state" for the largest distance of middle lines [m]
+  std::vector<std::size_t> of_each{};  ///< with `finest`: places of keys in the grid; runs that differ there are not compared
 };
 
 /// One scene over a grid of settings.

@@ -17,10 +17,10 @@ class Roll {
     Real last = 0;
     EffectMemory memory = state_.memory;
     for_each_memory(memory, [&](const auto& pairs) {
-      for (const VertexTriangle& pair : pairs) {
-        const Index3& triangle = world_.assembly.triangles[static_cast<std::size_t>(pair.triangle)];
-        if (!part(pair.vertex) || !part(triangle[0])) continue;
-        last = std::max({last, along(pair.vertex), std::min({along(triangle[0]), along(triangle[1]), along(triangle[2])})});
+      for (const auto& pair : pairs) {
+        const Index3& face = triangle(pair.triangle);
+        const int vertex = first_vertex(pair);
+        if (part(vertex) && part(face[0])) last = std::max({last, along(vertex), start_of(face)});
       }
     });
     return last;
@@ -32,6 +32,7 @@ class Roll {
     return {p.x(), p.y()};
   }
   Real along(int v) const { return tape(v) ? rest(v).x() : 0; }
+  Real start_of(const Index3& triangle) const { return std::min({along(triangle[0]), along(triangle[1]), along(triangle[2])}); }
   /// Vertices of the strip's first edge and of the rows up to `end`, in order.
   std::vector<int> edge(Real end) const {
     Real side = 0;
@@ -53,6 +54,12 @@ class Roll {
 
  private:
   int first() const { return tape_.first_vertex; }
+  const Index3& triangle(int t) const { return world_.assembly.triangles[static_cast<std::size_t>(t)]; }
+  int first_vertex(const VertexTriangle& pair) const { return pair.vertex; }
+  int first_vertex(const SampleTriangle& pair) const {
+    const int n = params<CohesiveZone>(world_.setup.effects).samples;
+    return triangle(pair.sample / (n * n))[0];
+  }
   const Vec2& rest(int v) const { return world_.assembly.rest[static_cast<std::size_t>(v)]; }
   bool tape(int v) const { return v >= first() && v < first() + tape_.vertices; }
   bool part(int v) const {

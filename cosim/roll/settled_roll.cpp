@@ -58,6 +58,7 @@ void engage(Scene& scene) {
   for (AdhesivePair& pair : scene.adhesives) {
     pair.adhesion.pair.beta0 = 1;
     pair.adhesion.pair.slip = SlipFrom::bonding;
+    pair.adhesion.area.reach = 1;
   }
 }
 }  // namespace
@@ -99,9 +100,9 @@ Setup roll_alone(const Setup& setup, std::size_t strip) {
 
 SettledRoll settle_roll(const Setup& alone, const SettleParams& params) {
   Setup cohesive = alone;
-  bool bonded = false;
-  for (AdhesivePair& pair : cohesive.scene.adhesives)
-    if (pair.adhesion.law == AdhesionLaw::bond) pair.adhesion.law = AdhesionLaw::per_pair, bonded = true;
+  bool other_law = false;
+  for (AdhesivePair& pair : cohesive.scene.adhesives) other_law |= pair.adhesion.law != AdhesionLaw::per_pair;
+  for (AdhesivePair& pair : cohesive.scene.adhesives) pair.adhesion.law = AdhesionLaw::per_pair;
   SettledRoll roll{World::build(cohesive), {}, {}};
   const auto run = [&] {
     roll.state = State::start(roll.world);
@@ -116,10 +117,10 @@ SettledRoll settle_roll(const Setup& alone, const SettleParams& params) {
     if (!roll.report.failure.empty()) throw NumericalError(name + " does not come to rest: " + roll.report.failure);
   };
   run();
-  if (!bonded) return roll;
-  Setup with_bonds = alone;
-  with_bonds.scene.strips[0].settled = roll.state.x;
-  roll.world = World::build(with_bonds);
+  if (!other_law) return roll;
+  Setup wanted = alone;
+  wanted.scene.strips[0].settled = roll.state.x;
+  roll.world = World::build(wanted);
   run();
   roll.world.setup.scene.strips[0].settled.clear();
   return roll;
@@ -147,7 +148,8 @@ std::string roll_settings(const Setup& alone) {
     const Adhesion& a = pair.adhesion;
     text.line(between + ": law", to_text(a.law));
     for (const auto& row : a.sticks) text.line(between + ": faces", std::string(row[0] ? "1" : "0") + (row[1] ? "1" : "0"));
-    text.add(between, a.pair);  // of bonds too: cohesion settles the roll that they are made in
+    text.add(between, a.pair);  // whatever the law: cohesion of pairs settles the roll
+    if (a.law == AdhesionLaw::per_area) text.add(between, a.area);
     if (a.law == AdhesionLaw::bond) text.add(between, a.bond);
   }
   for_each_effect([&]<class T>(std::type_identity<T>) { text.add(std::string(T::name), params<T>(alone.effects)); });
@@ -177,10 +179,16 @@ void place_roll(const SettledRoll& roll, std::size_t strip, Setup& setup) {
   const auto append = [&]<class T>(const MemoryOf<T>& from, MemoryOf<T>& to) {
     if constexpr (Remembers<T>) {
       for (typename T::Memory m : from.pairs) {
-        m.vertex = vertex(m.vertex), m.triangle = triangle(m.triangle);
+        if constexpr (Samples<T>) {
+          const int samples = params<T>(setup.effects).samples, each = samples * samples;
+          m.sample = triangle(m.sample / each) * each + m.sample % each;
+        } else {
+          m.vertex = vertex(m.vertex);
+        }
+        m.triangle = triangle(m.triangle);
         to.pairs.push_back(m);
       }
-      std::sort(to.pairs.begin(), to.pairs.end(), [](const VertexTriangle& p, const VertexTriangle& q) { return p.key() < q.key(); });
+      std::sort(to.pairs.begin(), to.pairs.end(), [](const auto& p, const auto& q) { return p.key() < q.key(); });
     }
   };
   std::apply([&](const auto&... from) { (append(from, std::get<std::remove_cvref_t<decltype(from)>>(setup.memory)), ...); },

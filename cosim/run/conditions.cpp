@@ -1,8 +1,13 @@
 #include "cosim/run/conditions.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <limits>
+#include <numbers>
+
+#include "tape/effects/barrier_law.hpp"
+#include "tape/model/strip_mesh.hpp"
 
 namespace cosim {
 namespace {
@@ -34,6 +39,34 @@ Real energy_tolerance(const World& world) {
     if (body.motion == Motion::driven) return 0.05;
   return 1e-6;
 }
+/// What tape that sticks by area needs, the worst of all: the mesh must resolve the fold, of radius sqrt(D/2R), and the zone behind the
+/// front that carries load, pi/2 times the length (4 D/k)^(1/4) of a beam on a foundation of the mean stiffness k = strength/final; and the
+/// barrier, which pushes where the tape rests, must have less to give than adhesion.
+void add_peel_conditions(const World& world, std::vector<Condition>& conditions) {
+  const Scene& scene = world.setup.scene;
+  const int samples = params<CohesiveZone>(world.setup.effects).samples;
+  Real cell_per_fold = 0, push = 0, given = 0, samples_in_zone = std::numeric_limits<Real>::infinity();
+  for (const AdhesivePair& pair : scene.adhesives) {
+    if (pair.adhesion.law != AdhesionLaw::per_area) continue;
+    const AreaCohesion& law = pair.adhesion.area;
+    for (const Strip& strip : scene.strips) {
+      if (strip.material != pair.a && strip.material != pair.b) continue;
+      const Film& film = scene.films[static_cast<std::size_t>(strip.film)];
+      const Real stiffness = film.plate_stiffness(), cell = cell_length(strip.mesh, film.width);
+      const Real zone = std::numbers::pi / 2 * std::pow(4 * stiffness * law.final_opening() / law.strength, 0.25);
+      const Jet barrier = BarrierLaw{scene.contact.kappa, scene.dhat()}.at(film.xi + law.rest * scene.dhat(), film.xi, 1);
+      push = std::max(push, -barrier.slope / law.strength);
+      given = std::max(given, barrier.value / law.toughness);
+      cell_per_fold = std::max(cell_per_fold, cell / std::sqrt(stiffness / (2 * law.toughness)));
+      samples_in_zone = std::min(samples_in_zone, samples * zone / cell);
+    }
+  }
+  if (cell_per_fold == 0) return;
+  conditions.push_back(at_most("cell_per_fold_radius", cell_per_fold, 0.3));
+  conditions.push_back(at_most("barrier_pressure_per_strength", push, 0.25));
+  conditions.push_back(at_most("barrier_energy_per_toughness", given, 0.01));
+  conditions.push_back({"samples_in_peel_zone", samples_in_zone, ">= 3", samples_in_zone >= 3});
+}
 }  // namespace
 
 Real energy_rise(const RunLog& log) {
@@ -50,7 +83,7 @@ std::vector<Condition> check_conditions(const World& world, const RunLog& log) {
   Real gap = std::numeric_limits<Real>::infinity();
   for (const StepRow& row : log.rows) gap = std::min(gap, row.report.min_gap);
   const Real stop_limit = world.setup.newton.velocity_tol * world.setup.scene.time.dt;
-  return {
+  std::vector<Condition> conditions{
       none("failed_steps", log.failure.empty() ? 0 : 1),
       none("retried_steps", total(log, [](const StepReport& r) { return r.substeps > 1; })),
       none("linear_solves_at_their_limit", total(log, [](const StepReport& r) { return r.linear_failures; })),
@@ -61,5 +94,7 @@ std::vector<Condition> check_conditions(const World& world, const RunLog& log) {
       at_most("max_strain", largest(log, [](const StepReport& r) { return r.max_strain; }), 0.05),
       at_most("energy_rise", energy_rise(log), energy_tolerance(world)),
   };
+  add_peel_conditions(world, conditions);
+  return conditions;
 }
 }  // namespace cosim

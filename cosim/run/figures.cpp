@@ -125,18 +125,17 @@ FigureValues boundary_advance(const World&, const RunLog& log) {
   return {{"boundary_advance_m", first.to - std::max<Real>(last.to, 0)}};
 }
 
-/// Force of the first grip that moves, along its way, while the front of the first interface advances: from one cell on.
+/// Force of the first grip that moves while the front of the first interface advances: from one cell on.
 FigureValues peel_force(const World& world, const RunLog& log) {
   const Scene& scene = world.setup.scene;
   const std::size_t g = moving_grip(scene);
-  const Vec3 way = scene.grips[g].motion.back().offset.normalized();
   const Strip& strip = scene.strips[0];
   const Real cell = cell_length(strip.mesh, scene.films[static_cast<std::size_t>(strip.film)].width);
   const auto front = [](const StepRow& row) { return row.report.adhesion[0].to; };
   std::vector<Real> forces;
   for (const StepRow& row : log.rows)
     if (front(row) < front(log.rows.front()) - cell / 2 && row.report.adhesion[0].live > 0)
-      forces.push_back(row.report.grip_force[g].dot(way));
+      forces.push_back(row.report.grip_force[g].norm());
   if (forces.empty()) return {};
   const Distribution over_steps = distribution(forces);
   return {{"peel_force_median_N", over_steps.p50}, {"peel_force_mean_N", over_steps.mean}, {"peel_force_max_N", over_steps.max}};
@@ -149,7 +148,7 @@ constexpr Figure kFigures[] = {
     {"body_travel", "how far each body that is not static ends from where it started", body_travel},
     {"rest_speed", "largest speed of a vertex or body at the end", rest_speed},
     {"max_strain", "largest principal membrane strain of the run", max_strain},
-    {"peel_force", "force of the first grip that moves, along its way, while the first interface peels: median, mean, largest", peel_force},
+    {"peel_force", "force of the first grip that moves, while the first interface peels: median, mean, largest", peel_force},
     {"boundary_advance", "tape that has come off: way of the end of the first interface along the first strip", boundary_advance},
     {"hub_range", "range of the hub's turning about its axis since its last grip was released", hub_range},
     {"hub_travel", "how far the centre of the hub ends from where it started", hub_travel},

@@ -4,10 +4,11 @@
 #include <sstream>
 
 #include "tape/core/error.hpp"
+#include "tape/step/engagement.hpp"
 
 namespace cosim {
 namespace {
-constexpr const char* kFormat = "tape states 1";
+constexpr const char* kFormat = "tape states 2";
 
 /// Matrices of equal size, one after the other.
 template <class T, class M>
@@ -67,7 +68,8 @@ bool consistent(const RecordedMesh& mesh) {
 bool consistent(const RecordedFrame& frame, const RecordedMesh& mesh) {
   const auto finite = [](const auto& value) { return value.allFinite(); };
   return std::ssize(frame.x) == mesh.strip_vertices && std::ssize(frame.bodies) == body_count(mesh) &&
-         frame.contact_force.size() == mesh.body.size() && std::all_of(frame.x.begin(), frame.x.end(), finite) &&
+         frame.contact_force.size() == mesh.body.size() && frame.engagement.size() == frame.x.size() &&
+         std::all_of(frame.x.begin(), frame.x.end(), finite) &&
          std::all_of(frame.bodies.begin(), frame.bodies.end(), [&](const Pose& X) { return finite(X.rotation) && finite(X.position); });
 }
 }  // namespace
@@ -99,7 +101,12 @@ RecordedMesh RecordedMesh::of(const World& world, std::string camera) {
 }
 
 RecordedFrame RecordedFrame::of(const World& world, const State& state, std::vector<Real> contact_force) {
-  RecordedFrame frame{.step = state.step, .time = state.time, .x = state.x, .bodies = {}, .contact_force = std::move(contact_force)};
+  RecordedFrame frame{.step = state.step,
+                      .time = state.time,
+                      .x = state.x,
+                      .bodies = {},
+                      .contact_force = std::move(contact_force),
+                      .engagement = vertex_engagement(world, state)};
   for (const BodyState& body : state.bodies) frame.bodies.push_back(body.pose);
   frame.contact_force.resize(static_cast<std::size_t>(world.assembly.surface_vertices), 0);
   return frame;
@@ -140,7 +147,11 @@ void StateWriter::add(const RecordedFrame& frame) {
   file_.append("time", std::vector<double>{frame.time}, {1});
   if (!frame.x.empty()) file_.append("x", flat<double>(frame.x), {frame.x.size(), 3});
   if (!poses.empty()) file_.append("pose", poses, {frame.bodies.size(), 12});
-  file_.append("contact_force", std::vector<float>(frame.contact_force.begin(), frame.contact_force.end()), {frame.contact_force.size()});
+  const auto append = [&](const char* name, const std::vector<Real>& values) {
+    file_.append(name, std::vector<float>(values.begin(), values.end()), {values.size()});
+  };
+  append("contact_force", frame.contact_force);
+  if (!frame.x.empty()) append("engagement", frame.engagement);
   file_.reserve();
 }
 
@@ -164,8 +175,12 @@ RecordedFrame StateReader::frame(int i) const {
                       .time = file_.read_row("time", i)[0],
                       .x = {},
                       .bodies = {},
-                      .contact_force = {}};
-  if (mesh_.strip_vertices > 0) frame.x = unflat<Vec3>(file_.read_row("x", i));
+                      .contact_force = {},
+                      .engagement = {}};
+  if (mesh_.strip_vertices > 0) {
+    frame.x = unflat<Vec3>(file_.read_row("x", i));
+    frame.engagement = file_.read_row("engagement", i);
+  }
   const std::vector<double> poses = body_count(mesh_) > 0 ? file_.read_row("pose", i) : std::vector<double>();
   for (std::size_t p = 0; p + 12 <= poses.size(); p += 12) {
     Pose X;

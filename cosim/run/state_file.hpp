@@ -33,6 +33,7 @@ struct RecordedFrame {
   std::vector<Vec3> x;              ///< [strip vertices] m
   std::vector<Pose> bodies;         ///< [bodies] X_WB
   std::vector<Real> contact_force;  ///< [nv] N, kept to 7 digits
+  std::vector<Real> engagement;     ///< [strip vertices] what adhesion is left (vertex_engagement), kept to 7 digits
 
   static RecordedFrame of(const World& world, const State& state, std::vector<Real> contact_force);
 };
@@ -40,7 +41,8 @@ struct RecordedFrame {
 std::vector<Vec3> vertex_positions(const RecordedMesh& mesh, const RecordedFrame& frame);
 
 /// Writes state.h5. Arrays: triangles [nt,3], rest [nv,2] m, body [nv], local [nv,3] m, objects [n,3] (first triangle, triangles, 1 for
-/// a strip); and per frame: step, time [s], x [strip vertices,3] m, pose [bodies,12] (rotation row by row, position), contact_force [nv] N.
+/// a strip); and per frame: step, time [s], x [strip vertices,3] m, pose [bodies,12] (rotation row by row, position), contact_force [nv] N,
+/// engagement [strip vertices].
 class StateWriter {
  public:
   StateWriter(const std::filesystem::path& name, const RecordedMesh& mesh);

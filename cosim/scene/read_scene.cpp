@@ -66,7 +66,11 @@ class SceneReader {
     bool roll = false;
     for (tape::AdhesivePair& pair : scene_.adhesives) {
       if (!inside_roll(pair.a, pair.b)) continue;
-      pair.adhesion.law = *scene_.model == tape::Model::bond_f ? tape::AdhesionLaw::bond : tape::AdhesionLaw::per_pair;
+      tape::AdhesionLaw& law = pair.adhesion.law;
+      if (*scene_.model == tape::Model::bond_f)
+        law = tape::AdhesionLaw::bond;
+      else if (law == tape::AdhesionLaw::bond)
+        law = tape::AdhesionLaw::per_pair;
       roll = true;
     }
     if (!roll) chosen.fail("the scene has no roll whose interfaces adhere");
@@ -179,7 +183,7 @@ class SceneReader {
   }
   /// @param roll  it is one inside a roll: the settings of all laws that a model may choose stand beside each other
   static tape::Adhesion adhesion(const Reader& entry, tape::AdhesionLaw law, bool roll) {
-    tape::Adhesion out{.law = law, .sticks = {}, .pair = {}, .bond = {}};
+    tape::Adhesion out{.law = law, .sticks = {}, .pair = {}, .area = {}, .bond = {}};
     if (law == tape::AdhesionLaw::bond || roll) {
       entry.read(out.bond);
       if (out.bond.floor >= out.bond.reach) entry["floor"].fail("not below reach: no pair would ever bond");
@@ -188,6 +192,7 @@ class SceneReader {
       entry.read(out.pair);
       if (out.pair.beta0 == 0 && out.pair.gamma == 0) entry["gamma"].fail("0 with beta0 = 0: no pair would ever engage");
     }
+    if (law == tape::AdhesionLaw::per_area) entry.read(out.area);
     return out;
   }
   bool of_strip(int material) const {

@@ -17,7 +17,8 @@ struct VertexPath {
   Vec3 arm;       ///< [m]
   Vec3 spin;      ///< [rad] per whole step
   TAPE_HD Vec3 at(Real t) const { return centre + t * velocity + (straight() ? arm : rotate(t * spin, arm)); }
-  TAPE_HD bool straight() const { return spin.x() == 0 && spin.y() == 0 && spin.z() == 0; }
+  /// Also where the square of the spin underflows: its norm is then 0, and no such turn moves anything.
+  TAPE_HD bool straight() const { return spin.squaredNorm() == 0; }
 };
 
 /// Paths of all vertices along a direction of the unknowns.

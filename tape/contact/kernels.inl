@@ -37,6 +37,26 @@ struct SurfaceView {
             .sharing = b.sharing,
             .triangle = t};
   }
+  /// A sample of a triangle that is cut into n^2 equal ones, at the centroid of one of them, and triangle t.
+  TAPE_HD SamplePair sample_triangle(int sample, int t, int n) const {
+    const SurfaceTriangle &a = triangles[sample / (n * n)], &b = triangles[t];
+    SamplePair p{.v = {a.v[0], a.v[1], a.v[2], b.v[0], b.v[1], b.v[2]},
+                 .w = {},
+                 .interface = interface(a.v[0], b.v[0]),
+                 .xi = xi(a) + xi(b),
+                 .area = a.area / (n * n),
+                 .id = {sample, t}};
+    // Row r, counted from the first corner, holds 2 r + 1 of them: those that stand as the whole does, and upside down in between.
+    const int k = sample % (n * n);
+    int r = 0;
+    while ((r + 1) * (r + 1) <= k) ++r;
+    const int place = k - r * r;
+    const bool turned = place % 2 == 1;
+    p.w[2] = (place / 2 + (turned ? 2.0 : 1.0) / 3) / n;
+    p.w[0] = 1 - (r + (turned ? 1.0 : 2.0) / 3) / n;
+    p.w[1] = 1 - p.w[0] - p.w[2];
+    return p;
+  }
 };
 
 /// Trust box of a vertex in the world, and the one seen from the leader of its object (the same without a leader).
@@ -181,6 +201,30 @@ struct VertexQuery {
   TAPE_HD ContactPair pair(int v, int t) const { return s.vertex_triangle(v, t); }
 };
 
+/// Finds the triangles that a sample may stick to, where everything is within the trust boxes.
+struct SampleQuery {
+  SurfaceView s;
+  TreeView tree;
+  Span<const Vec3> x;
+  /// Calls f(pair, distance [m]) for each triangle within dhat of touching the sample, in no order.
+  template <class F>
+  TAPE_HD void visit(int sample, int n, F&& f) const {
+    const int own = sample / (n * n), carrier = s.triangle_carrier[own];
+    const SurfaceTriangle& a = s.triangles[own];
+    const Vec3 point = s.sample_triangle(sample, own, n).point(x);
+    tree.visit(query_box(inflated(Box{point, point}, s.xi(a) + s.dhat / 2), 0, carrier == kFixed), [&](int t) {
+      const SurfaceTriangle& b = s.triangles[t];
+      if (carrier != kFree && carrier == s.triangle_carrier[t]) return;
+      for (int v : a.v)
+        for (int w : b.v)
+          if (v == w) return;
+      const Vec3 at[4] = {point, x[b.v[0]], x[b.v[1]], x[b.v[2]]};
+      const Real d = combine(closest_vertex_triangle(at).weight, at).norm();
+      if (d < s.xi(a) + s.xi(b) + s.dhat) f(s.sample_triangle(sample, t, n), d);
+    });
+  }
+};
+
 /// Finds the edges of higher id that an edge may touch.
 struct EdgeQuery {
   SurfaceView s;
@@ -224,9 +268,9 @@ struct EdgeQuery {
   }
 };
 
-/// Place of a key in a sorted list of pairs, -1 if it is not there.
-template <class Pair>
-TAPE_HD int find_pair(Span<const Pair> sorted, std::uint64_t key) {
+/// Place of the first of a sorted list of names whose key is not below `key`; its size if there is none.
+template <class Name>
+TAPE_HD int first_from(Span<const Name> sorted, std::uint64_t key) {
   int low = 0, high = sorted.size;
   while (low < high) {
     const int middle = (low + high) / 2;
@@ -236,7 +280,12 @@ TAPE_HD int find_pair(Span<const Pair> sorted, std::uint64_t key) {
       high = middle;
     }
   }
-  return low < sorted.size && sorted[low].key() == key ? low : -1;
+  return low;
+}
+template <class Name>
+TAPE_HD bool holds(Span<const Name> sorted, std::uint64_t key) {
+  const int at = first_from(sorted, key);
+  return at < sorted.size && sorted[at].key() == key;
 }
 struct MakeBonded {
   SurfaceView s;
@@ -252,7 +301,7 @@ struct FlagUnbonded {
   Span<const VertexTriangle> bonded;
   Span<int> flag;  ///< [found + 1], the last stays 0
   TAPE_HD void operator()(int i) const {
-    flag[i] = i < found.size && (found[i].triangle < 0 || find_pair(bonded, found[i].name().key()) < 0) ? 1 : 0;
+    flag[i] = i < found.size && (found[i].triangle < 0 || !holds(bonded, found[i].name().key())) ? 1 : 0;
   }
 };
 struct KeepFlagged {

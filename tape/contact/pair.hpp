@@ -8,11 +8,19 @@ namespace tape {
 /// Vertex against triangle (v[0]; v[1..3]) or edge against edge (v[0..1]; v[2..3]).
 enum class PairKind : int { vertex_triangle, edge_edge };
 
+/// Orders names by `first`, then `second`.
+TAPE_HD inline std::uint64_t pair_key(int first, int second) {
+  return static_cast<std::uint64_t>(first) << 32 | static_cast<std::uint64_t>(second);
+}
 /// Names a vertex-triangle pair.
 struct VertexTriangle {
   int vertex, triangle;
-  /// Orders pairs by vertex, then triangle.
-  TAPE_HD std::uint64_t key() const { return static_cast<std::uint64_t>(vertex) << 32 | static_cast<std::uint64_t>(triangle); }
+  TAPE_HD std::uint64_t key() const { return pair_key(vertex, triangle); }
+};
+/// Names a sample of a triangle's area and a triangle that it faces. Triangle t has the samples t n^2 ... t n^2 + n^2 - 1, n to a side.
+struct SampleTriangle {
+  int sample, triangle;
+  TAPE_HD std::uint64_t key() const { return pair_key(sample, triangle); }
 };
 
 /// Which of a triangle's edges and vertices other triangles have too: the barrier must count each place of a surface once.
@@ -23,6 +31,7 @@ struct Sharing {
 
 /// Two surface primitives that may touch. Its constants come with it, so that effects need no tables.
 struct ContactPair {
+  using Name = VertexTriangle;
   int v[4];  ///< vertices
   PairKind kind;
   int interface;      ///< material of the first primitive times the number of materials, plus that of the second
@@ -33,6 +42,19 @@ struct ContactPair {
   Sharing sharing;    ///< of the triangle
   int triangle = -1;  ///< id of the triangle; -1: edges
   TAPE_HD VertexTriangle name() const { return {v[0], triangle}; }  ///< of a vertex-triangle pair
+};
+
+/// A point inside a triangle, which stands for a piece of its area, and another triangle.
+struct SamplePair {
+  using Name = SampleTriangle;
+  int v[6];       ///< vertices of the sample's triangle, of the other
+  Real w[3];      ///< [1] barycentric coordinates of the sample
+  int interface;  ///< material of the sample times the number of materials, plus that of the other triangle
+  Real xi;        ///< [m]   sum of the half-thicknesses
+  Real area;      ///< [m^2] at rest
+  SampleTriangle id;
+  TAPE_HD SampleTriangle name() const { return id; }
+  TAPE_HD Vec3 point(Span<const Vec3> x) const { return w[0] * x[v[0]] + w[1] * x[v[1]] + w[2] * x[v[2]]; }
 };
 
 TAPE_HD inline Closest closest(PairKind kind, const Vec3 (&x)[4]) {

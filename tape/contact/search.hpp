@@ -37,6 +37,8 @@ class ContactSearch {
   void forget() { built_ = false; }
   Span<const ContactPair> candidates() const { return pairs_.span(); }
   detail::SurfaceView surface() const { return surface_.view(); }
+  /// For samples of the surface at positions x [nv] m, which must be where the candidates are good.
+  detail::SampleQuery samples(Span<const Vec3> x) const { return {surface_.view(), triangle_tree_.view(), x}; }
   const SearchReport& report() const { return report_; }
 
   /// Largest share of the step along `paths` for each object, in [0, 1]; equal for objects that candidates connect.

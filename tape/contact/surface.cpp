@@ -35,11 +35,12 @@ void SurfaceMesh::add_object(const std::string& name, const std::vector<Vec3>& r
   std::map<Ends, Edge> edge_of;
   std::vector<std::uint16_t> at_vertex(rest.size(), 0);  // triangles there
   for (const Index3& t : added) {
-    triangles.push_back({.v = {}, .mean_area = 0, .sharing = {}, .open = false});
+    triangles.push_back({.v = {}, .area = 0, .mean_area = 0, .sharing = {}, .open = false});
     SurfaceTriangle& triangle = triangles.back();
     for (int k = 0; k < 3; ++k) triangle.v[k] = static_cast<int>(first_vertex) + t[k];
     const int(&v)[3] = triangle.v;
     const Real area = (x(v[1]) - x(v[0])).cross(x(v[2]) - x(v[0])).norm() / 2;
+    triangle.area = area;
     total += area;
     for (int k = 0; k < 3; ++k) {
       vertex(v[k]).area += area / 3;

@@ -21,6 +21,7 @@ struct SurfaceEdge {
 };
 struct SurfaceTriangle {
   int v[3];
+  Real area;       ///< [m^2] at rest
   Real mean_area;  ///< [m^2] of the triangles of its object, at rest
   Sharing sharing;
   bool open;  ///< its object has a rim

@@ -11,12 +11,14 @@ namespace tape {
 struct Bonds {
   static constexpr std::string_view name = "bonds";
   using Params = NoParams;
+  using Pair = ContactPair;
   /// What a bond remembers. One that was released is remembered for a while, so that it is not made again.
   struct Memory : VertexTriangle {
     int cooldown;  ///< steps until a released pair may bond again; 0: it is bonded and replaces the contact of the pair
     Real rest;     ///< [m] distance when it was made
     Mat3 inverse;  ///< [1/m] D_b^-1
     bool replaces_contact() const { return cooldown == 0; }
+    Real engagement(const Adhesion&) const { return cooldown == 0 ? 1 : 0; }
     template <class F>
     void visit(F&& f) {
       f(vertex), f(triangle), f(cooldown), f(rest);
@@ -117,7 +119,8 @@ struct Bonds {
     const PairState p = PairState::at(e.pair, s.x);
     const Vec3 pull = e.stiffness > 0 ? Vec3(gradient(s, i).head<3>()) : Vec3(Vec3::Zero()), n = p.normal();
     return {.interface = e.pair.interface,
-            .vertex = e.pair.v[0],
+            .vertex = {e.pair.v[0]},
+            .weight = {1},
             .live = e.stiffness > 0,
             .normal = pull.dot(n),
             .tangential = (pull - pull.dot(n) * n).norm()};

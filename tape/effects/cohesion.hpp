@@ -1,6 +1,7 @@
 #pragma once
 #include "tape/effects/barrier_law.hpp"
 #include "tape/effects/effect.hpp"
+#include "tape/effects/triangle_plane.hpp"
 
 namespace tape {
 /// Whether the faces that vertex and triangle turn to each other adhere. The offset of the pair points to the vertex.
@@ -14,16 +15,18 @@ TAPE_HD inline bool adheres(const Adhesion& adhesion, const ContactPair& pair, c
 /// d* = xi + dhat/2 and tangential slip u,
 ///   E = beta^2 [C_n / (2 dhat) (d - d*)^2 + C_t / dhat |u|^2]           [the paper, eq. 2]
 /// beta is constant in a step and follows eq. 3 at its end. The slip is measured in the plane of the triangle, at the foot of the
-/// vertex when the step started: with edges e_a of the triangle, r from that material point to the vertex, and the metric
-/// G_ab = e_a.e_b of then, u has the covariant components e_a.r - (e_a.r at the start), |u|^2 = u^T G^-1 u. A rigid motion of the pair
-/// leaves them alone; in a frame that stays behind, a roll that turns would feel its layers slip.
+/// vertex when the step started: with edges e_a of the triangle, r from that material point to the vertex (TrianglePlane), and the metric
+/// G_ab = e_a.e_b of then, u has the covariant components e_a.r - (e_a.r at the start), |u|^2 = u^T G^-1 u. In a frame that stays behind,
+/// a roll that turns would feel its layers slip.
 struct Cohesion {
   static constexpr std::string_view name = "cohesion";
   using Params = NoParams;
+  using Pair = ContactPair;
   /// What a pair remembers.
   struct Memory : VertexTriangle {
     Real beta;     ///< [1] engagement
     Real slip[2];  ///< [m^2] since bonding, covariant
+    Real engagement(const Adhesion&) const { return beta; }
     template <class F>
     void visit(F&& f) {
       f(vertex), f(triangle), f(beta), f(slip[0]), f(slip[1]);
@@ -60,10 +63,8 @@ struct Cohesion {
     e.sliding = 2 * m.beta * m.beta * law.ct / dhat;
     e.rest = pair.xi + dhat / 2;
     for (int k = 0; k < 3; ++k) e.foot[k] = -p.closest.weight[1 + k];
-    const Plane at(e, s.x);
-    Mat2 metric;
-    metric << at.e[0].squaredNorm(), at.e[0].dot(at.e[1]), at.e[0].dot(at.e[1]), at.e[1].squaredNorm();
-    e.inverse_metric = metric.inverse();
+    const auto at = plane(e, s.x);
+    e.inverse_metric = at.metric().inverse();
     e.start = at.along() - Vec2(m.slip[0], m.slip[1]);
     return e;
   }
@@ -75,26 +76,26 @@ struct Cohesion {
   TAPE_HD Real energy(const StateView& s, int i) const {
     const Element& e = elements[i];
     const Real open = PairState::at(e.pair, s.x).d - e.rest;
-    const Vec2 slip = Plane(e, s.x).along() - e.start;
+    const Vec2 slip = plane(e, s.x).along() - e.start;
     return e.opening / 2 * open * open + e.sliding / 2 * slip.dot(e.inverse_metric * slip);
   }
   TAPE_HD VecN<12> gradient(const StateView& s, int i) const {
     const Element& e = elements[i];
     const PairState p = PairState::at(e.pair, s.x);
-    const Plane plane(e, s.x);
-    const Vec2 pull = e.sliding * e.inverse_metric * (plane.along() - e.start);
-    return e.opening * (p.d - e.rest) * p.gradient() + plane.slope() * pull;
+    const auto at = plane(e, s.x);
+    const Vec2 pull = e.sliding * e.inverse_metric * (at.along() - e.start);
+    return e.opening * (p.d - e.rest) * p.gradient() + at.slope() * pull;
   }
   /// `projected` drops the curvature of the distance and of the slip: what stays are squares.
   TAPE_HD MatN<12, 12> hessian(const StateView& s, int i, HessianMode mode) const {
     const Element& e = elements[i];
     const PairState p = PairState::at(e.pair, s.x);
-    const Plane plane(e, s.x);
-    const MatN<12, 2> J = plane.slope();
+    const auto at = plane(e, s.x);
+    const MatN<12, 2> J = at.slope();
     MatN<12, 12> h = e.sliding * J * e.inverse_metric * J.transpose();
     if (mode == HessianMode::exact) {
       h += p.hessian(e.opening * (p.d - e.rest), e.opening);
-      plane.add_curvature(e.sliding * e.inverse_metric * (plane.along() - e.start), h);
+      at.add_curvature(e.sliding * e.inverse_metric * (at.along() - e.start), h);
     } else {
       const VecN<12> g = p.gradient();
       h += e.opening * g * g.transpose();
@@ -118,16 +119,17 @@ struct Cohesion {
     const PairCohesion& law = s.adhesion[e.pair.interface].pair;
     const Real d = PairState::at(e.pair, s.x).d;
     if (!(d - e.rest < law.drop * dhat)) return false;
-    const Vec2 slip = Plane(e, s.x).along() - e.start;
+    const Vec2 slip = plane(e, s.x).along() - e.start;
     m.beta = std::fmin(std::fmax(m.beta + s.dt * rate(law, e.pair.xi, m.beta, d, slip.dot(e.inverse_metric * slip)), 0), 1);
     for (int a = 0; a < 2; ++a) m.slip[a] = law.slip == SlipFrom::bonding ? slip[a] : 0;
     return true;
   }
   TAPE_HD AdhesiveForce force(const StateView& s, int i) const {
     const Element& e = elements[i];
-    const Vec2 slip = Plane(e, s.x).along() - e.start;
+    const Vec2 slip = plane(e, s.x).along() - e.start;
     return {.interface = e.pair.interface,
-            .vertex = e.pair.v[0],
+            .vertex = {e.pair.v[0]},
+            .weight = {1},
             .live = e.opening > 0,
             .normal = e.opening * (PairState::at(e.pair, s.x).d - e.rest),
             .tangential = e.sliding * std::sqrt(slip.dot(e.inverse_metric * slip))};
@@ -144,33 +146,11 @@ struct Cohesion {
   }
 
  private:
-  /// The foot's material point and the vertex, seen along the triangle's edges.
-  struct Plane {
-    Vec3 e[2], r;
-    Real w[4];  ///< r = sum w_i x_i
-    TAPE_HD Plane(const Element& element, Span<const Vec3> x) : w{1, -element.foot[0], -element.foot[1], -element.foot[2]} {
-      const int(&v)[4] = element.pair.v;
-      const Vec3 at[4] = {x[v[0]], x[v[1]], x[v[2]], x[v[3]]};
-      e[0] = at[2] - at[1], e[1] = at[3] - at[1];
-      r = combine(w, at);
-    }
-    TAPE_HD Vec2 along() const { return {e[0].dot(r), e[1].dot(r)}; }
-    /// Of vertex i in edge a.
-    TAPE_HD static Real edge_weight(int a, int i) { return i == 1 ? -1.0 : i == 2 + a ? 1.0 : 0.0; }
-    TAPE_HD MatN<12, 2> slope() const {
-      MatN<12, 2> J;
-      for (int i = 0; i < 4; ++i)
-        for (int a = 0; a < 2; ++a) J.block<3, 1>(3 * i, a) = w[i] * e[a] + edge_weight(a, i) * r;
-      return J;
-    }
-    /// h += sum_a y_a d2(e_a.r)/dx2.
-    TAPE_HD void add_curvature(const Vec2& y, MatN<12, 12>& h) const {
-      for (int i = 0; i < 4; ++i)
-        for (int j = 0; j < 4; ++j)
-          for (int a = 0; a < 2; ++a)
-            h.block<3, 3>(3 * i, 3 * j).diagonal().array() += y[a] * (edge_weight(a, i) * w[j] + w[i] * edge_weight(a, j));
-    }
-  };
+  TAPE_HD static TrianglePlane<4> plane(const Element& e, Span<const Vec3> x) {
+    const int(&v)[4] = e.pair.v;
+    const Vec3 at[4] = {x[v[0]], x[v[1]], x[v[2]], x[v[3]]};
+    return TrianglePlane<4>(at, {1}, e.foot);
+  }
   /// The part of p that the barrier B = kappa (r-1)^2 ln(r)^2 gives: -2 d dhat B'(d^2).
   TAPE_HD Real compression(Real d, Real xi) const { return -dhat * BarrierLaw{kappa, dhat}.at(d, xi, 4 / dhat).slope; }
 };

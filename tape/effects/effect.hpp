@@ -22,13 +22,15 @@ namespace tape {
 ///   static constexpr bool free_vertices = true the stencil names strip vertices only: nothing to relocate
 ///   static constexpr bool incremental = true   its energy belongs to the step and is not stored: inertia, friction
 ///   static constexpr bool contact_pairs = true elements are the candidates of the contact search
-///   struct Memory : VertexTriangle             what it remembers of a pair from step to step, with visit(f) over all its members (Real or
+///   using Pair                                 ContactPair, or SamplePair: then samples(), count() say how many there are
+///   struct Memory : Pair::Name                 what it remembers of a pair from step to step, with visit(f) over all its members (Real or
 ///                                              int):
 ///     Element recall(memory, pair, s)          the element of a remembered pair, at the start of each step
 ///     bool renew(s, i, Memory&)                what element i remembers at the end of the step; false: the pair is forgotten
-///     bool begin(pair, s, Memory& out)         whether a candidate that was not remembered is from now on
+///     bool begin(pair, s, Memory& out)         whether a candidate that was not remembered is from now on; a sample sticks to the nearest
 ///     AdhesiveForce force(s, i)                what element i carries, for the report
 ///     Real accuracy_to_judge(s, i)             optional: [m] to which positions must be solved before renew may judge element i
+///     Real Memory::engagement(adhesion)        [1] how much of a new pair's adhesion it has, for pictures
 ///     Memory::replaces_contact()               optional: while true the pair leaves contact and friction; CCD only keeps it from crossing
 ///   bool active(s, i)                          false: element i contributes nothing here, gradient and Hessian skip it
 template <class T>
@@ -48,20 +50,25 @@ concept Effect = requires(const Scene& scene, const Assembly& assembly, typename
 /// What one adhering pair carries.
 struct AdhesiveForce {
   int interface;    ///< of ContactPair
-  int vertex;       ///< of the pair
+  int vertex[3];    ///< that carry the place of the strip
+  Real weight[3];   ///< [1] by which they carry it; they sum to 1
   bool live;        ///< it still adheres
   Real normal;      ///< [N] that holds the pair together; negative: pushes it apart
   Real tangential;  ///< [N] against sliding
 };
 
 template <class T>
-concept Remembers = requires(const T& term, typename T::Memory& m, const ContactPair& pair, const StateView& s, int i) {
+concept Remembers = requires(const T& term, typename T::Memory& m, const typename T::Pair& pair, const StateView& s, int i) {
   { term.recall(m, pair, s) } -> std::same_as<typename T::Element>;
   { term.renew(s, i, m) } -> std::same_as<bool>;
   { term.begin(pair, s, m) } -> std::same_as<bool>;
   { term.force(s, i) } -> std::same_as<AdhesiveForce>;
-  requires std::derived_from<typename T::Memory, VertexTriangle>;
+  { m.engagement(s.adhesion[0]) } -> std::same_as<Real>;
+  requires std::derived_from<typename T::Memory, typename T::Pair::Name>;
 };
+/// What sticks are samples of the strips' area, not vertices.
+template <class T>
+concept Samples = Remembers<T> && std::same_as<typename T::Pair, SamplePair>;
 
 /// Params of an effect that has nothing to set.
 struct NoParams {

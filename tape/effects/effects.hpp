@@ -8,6 +8,7 @@
 #include "tape/effects/body_inertia.hpp"
 #include "tape/effects/bonds.hpp"
 #include "tape/effects/cohesion.hpp"
+#include "tape/effects/cohesive_zone.hpp"
 #include "tape/effects/friction.hpp"
 #include "tape/effects/gravity.hpp"
 #include "tape/effects/inertia.hpp"
@@ -17,7 +18,8 @@
 namespace tape {
 /// The one list of effects. Reading and writing scenes, checks, assembly on both back ends, timing, reports and the tests that hold
 /// for all of them follow from it.
-using Effects = std::tuple<Inertia, BodyInertia, BodyDrive, Gravity, Membrane, Bending, Barrier, Friction, Cohesion, Bonds, Tether>;
+using Effects =
+    std::tuple<Inertia, BodyInertia, BodyDrive, Gravity, Membrane, Bending, Barrier, Friction, Cohesion, CohesiveZone, Bonds, Tether>;
 
 /// The settings of one effect, told apart by the effect even where two have none.
 template <class T>

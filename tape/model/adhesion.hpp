@@ -6,8 +6,8 @@
 
 namespace tape {
 /// How an interface sticks.
-enum class AdhesionLaw { none, per_pair, bond };
-constexpr auto enum_names(AdhesionLaw) { return std::array<std::string_view, 3>{"none", "per_pair", "bond"}; }
+enum class AdhesionLaw { none, per_pair, per_area, bond };
+constexpr auto enum_names(AdhesionLaw) { return std::array<std::string_view, 4>{"none", "per_pair", "per_area", "bond"}; }
 
 /// What tangential slip is measured from.
 enum class SlipFrom { step, bonding };
@@ -42,6 +42,27 @@ struct PairCohesion {
   }
 };
 
+/// Cohesive zone by area, which does not depend on the mesh: traction rises linearly with the opening to `strength`, then falls
+/// linearly to nothing, and the area under it is `toughness`.
+struct AreaCohesion {
+  Real strength = 1e5;
+  Real toughness = 10;
+  Real peak = 0.1;
+  Real shear = 1;
+  Real rest = 0.5;
+  Real reach = 0.5;
+  template <class F>
+  void fields(F&& f) {
+    f("strength", strength, "Pa", Range::positive(), "largest traction");
+    f("toughness", toughness, "J/m^2", Range::positive(), "work that separates a unit of area for good");
+    f("peak", peak, "1", Range::above(0, 0.9), "opening at the largest traction, in units of the final one, 2 toughness/strength");
+    f("shear", shear, "1", Range::non_negative(), "r, weight of squared slip against squared opening");
+    f("rest", rest, "1", Range::above(0, 1), "gap from which the opening counts, in units of dhat");
+    f("reach", reach, "1", Range::above(0, 1), "gap up to which area sticks, in units of dhat; up to `rest` it must be pressed together");
+  }
+  Real final_opening() const { return 2 * toughness / strength; }  ///< [m]
+};
+
 /// Releasable bonds of the paper, eq. 4: each replaces contact, friction and cohesion of a vertex-triangle pair.
 struct BondLaw {
   Real kappa_b = 1e6;
@@ -64,6 +85,7 @@ struct Adhesion {
   AdhesionLaw law = AdhesionLaw::none;
   bool sticks[2][2] = {};  ///< [face of the first][face of the second]: which faces adhere to which
   PairCohesion pair;
+  AreaCohesion area;
   BondLaw bond;
 };
 }  // namespace tape

@@ -80,11 +80,13 @@ class Objective {
   /// Makes the elements of what is remembered, at s.x == s.x_start.
   void recall(const EffectMemory& memory, const StateView& s, const detail::SurfaceView& surface);
   /// What is remembered of a step that ended at s.
-  EffectMemory remember(const StateView& s);
+  EffectMemory remember(const StateView& s, const detail::SampleQuery& samples);
   /// [m] to which positions must be solved before `remember` may judge s; infinite if nothing is near a threshold.
   Real accuracy_to_judge(const StateView& s);
   /// Energy [J] of what adheres.
   Real adhesive_energy(const StateView& s);
+  /// Energy [J] of contact of these pairs, whether they are candidates or not.
+  Real contact_energy(const StateView& s, const std::vector<VertexTriangle>& pairs, const detail::SurfaceView& surface);
   EnergySum energy(const StateView& s);
   /// Gradient and matrix at s.
   void linearize(const StateView& s, HessianMode mode);

@@ -23,6 +23,11 @@ struct AddEnergies {
 };
 
 template <class T>
+EnergySum energy_of(const T& term, const StateView& s) {
+  return reduce(term.elements.size, EnergySum{}, ElementEnergy<T>{term, s}, AddEnergies{});
+}
+
+template <class T>
 struct FirstNonFinite {
   T term;
   StateView s;
@@ -190,7 +195,7 @@ inline EnergySum Objective::energy(const StateView& s) {
   for_each([&]<class T>(std::string_view, Term<T>& term) {
     if (term.view.elements.size == 0) return;
     const Stopwatch watch(term.ms);
-    const EnergySum e = reduce(term.view.elements.size, EnergySum{}, objective::ElementEnergy<T>{term.view, s}, objective::AddEnergies{});
+    const EnergySum e = objective::energy_of(term.view, s);
     total = {total.sum + e.sum, total.scale + e.scale};
   });
   return total;

@@ -1,9 +1,28 @@
 #pragma once
+#include <limits>
+
 #include "tape/solver/objective.inl"
 
 /// What effects remember: elements out of it when a step starts, and back when it has ended.
 namespace tape::TAPE_SIDE {
 namespace objective {
+/// The pair of this name with its constants.
+template <class T>
+TAPE_HD typename T::Pair pair_of(const T& term, const detail::SurfaceView& surface, const typename T::Pair::Name& name) {
+  if constexpr (Samples<T>) {
+    return surface.sample_triangle(name.sample, name.triangle, term.samples);
+  } else {
+    return surface.vertex_triangle(name.vertex, name.triangle);
+  }
+}
+
+struct NamedPairs {
+  detail::SurfaceView surface;
+  Span<const VertexTriangle> names;
+  Span<ContactPair> pairs;
+  TAPE_HD void operator()(int i) const { pairs[i] = surface.vertex_triangle(names[i].vertex, names[i].triangle); }
+};
+
 template <class T>
 struct Recall {
   T term;
@@ -11,18 +30,53 @@ struct Recall {
   detail::SurfaceView surface;
   Span<const typename T::Memory> memory;
   Span<typename T::Element> elements;
-  TAPE_HD void operator()(int i) const {
-    elements[i] = term.recall(memory[i], surface.vertex_triangle(memory[i].vertex, memory[i].triangle), s);
+  TAPE_HD void operator()(int i) const { elements[i] = term.recall(memory[i], pair_of(term, surface, memory[i]), s); }
+};
+
+/// Contact pairs that may be remembered: candidate k is one of them.
+struct PairCandidates {
+  Span<const ContactPair> pairs;
+  int size;
+  template <class T>
+  TAPE_HD bool begin(int k, const T& term, const StateView& s, Span<const typename T::Memory> before, typename T::Memory& out) const {
+    const ContactPair& pair = pairs[k];
+    return pair.triangle >= 0 && !detail::holds(before, pair.name().key()) && term.begin(pair, s, out);
+  }
+};
+/// Samples that may be remembered: candidate k is sample k with the nearest triangle that it sticks to, the first of equally near ones.
+struct SampleCandidates {
+  detail::SampleQuery query;
+  int size;
+  template <class T>
+  TAPE_HD bool begin(int k, const T& term, const StateView& s, Span<const typename T::Memory> before, typename T::Memory& out) const {
+    const int known = detail::first_from(before, pair_key(k, 0));
+    if (known < before.size && before[known].sample == k) return false;
+    Real nearest = std::numeric_limits<Real>::infinity();
+    query.visit(k, term.samples, [&](const SamplePair& pair, Real d) {
+      typename T::Memory found;
+      const bool nearer = d < nearest || (d == nearest && pair.id.triangle < out.triangle);
+      if (nearer && term.begin(pair, s, found)) out = found, nearest = d;
+    });
+    return nearest < std::numeric_limits<Real>::infinity();
   }
 };
 
-/// Flags what is remembered after the step: pairs that were, then candidates that were not.
 template <class T>
+auto candidates_of(const T& term, Span<const ContactPair> pairs, const detail::SampleQuery& samples) {
+  if constexpr (Samples<T>) {
+    return SampleCandidates{samples, term.count()};
+  } else {
+    return PairCandidates{pairs, pairs.size};
+  }
+}
+
+/// Flags what is remembered after the step: pairs that were, then candidates that were not.
+template <class T, class Candidates>
 struct Judge {
   T term;
   StateView s;
   Span<const typename T::Memory> before;
-  Span<const ContactPair> candidates;
+  Candidates candidates;
   Span<typename T::Memory> after;  ///< [before + candidates]
   Span<int> flag;                  ///< [before + candidates + 1], the last stays 0
   TAPE_HD void operator()(int i) const {
@@ -30,8 +84,7 @@ struct Judge {
       after[i] = before[i];
       flag[i] = term.renew(s, i, after[i]) ? 1 : 0;
     } else if (i < after.size) {
-      const ContactPair& pair = candidates[i - before.size];
-      flag[i] = pair.triangle >= 0 && detail::find_pair(before, pair.name().key()) < 0 && term.begin(pair, s, after[i]) ? 1 : 0;
+      flag[i] = candidates.begin(i - before.size, term, s, before, after[i]) ? 1 : 0;
     } else {
       flag[i] = 0;
     }
@@ -79,19 +132,21 @@ inline void Objective::recall(const EffectMemory& memory, const StateView& s, co
   });
 }
 
-inline EffectMemory Objective::remember(const StateView& s) {
+inline EffectMemory Objective::remember(const StateView& s, const detail::SampleQuery& samples) {
   EffectMemory memory;
   for_each([&]<class T>(std::string_view, Term<T>& term) {
     if constexpr (Remembers<T>) {
       using Memory = typename T::Memory;
       const Stopwatch watch(term.ms);
-      const int all = term.memory.size() + candidates_.size;
+      const auto candidates = objective::candidates_of(term.view, candidates_, samples);
+      const int all = term.memory.size() + candidates.size;
       Buffer<Memory> after;
       Buffer<std::uint64_t> key;
       Buffer<int> from;
       after.resize(all);
       scratch_.resize(all + 1);
-      parallel_for(all + 1, objective::Judge<T>{term.view, s, term.memory.span(), candidates_, after.span(), scratch_.span()});
+      parallel_for(all + 1, objective::Judge<T, std::remove_cv_t<decltype(candidates)>>{term.view, s, term.memory.span(), candidates,
+                                                                                        after.span(), scratch_.span()});
       const int kept = exclusive_scan(scratch_.span());
       key.resize(kept), from.resize(kept), term.memory.resize(kept);
       parallel_for(all, objective::Remembered<Memory>{after.span(), scratch_.span(), key.span(), from.span()});
@@ -117,8 +172,23 @@ inline Real Objective::accuracy_to_judge(const StateView& s) {
 inline Real Objective::adhesive_energy(const StateView& s) {
   Real sum = 0;
   for_each([&]<class T>(std::string_view, Term<T>& term) {
-    if constexpr (Remembers<T>)
-      sum += reduce(term.view.elements.size, EnergySum{}, objective::ElementEnergy<T>{term.view, s}, objective::AddEnergies{}).sum;
+    if constexpr (Remembers<T>) sum += objective::energy_of(term.view, s).sum;
+  });
+  return sum;
+}
+
+inline Real Objective::contact_energy(const StateView& s, const std::vector<VertexTriangle>& pairs, const detail::SurfaceView& surface) {
+  Real sum = 0;
+  const Buffer<VertexTriangle> names(pairs);
+  Buffer<ContactPair> contact;
+  contact.resize(names.size());
+  parallel_for(names.size(), objective::NamedPairs{surface, names.span(), contact.span()});
+  for_each([&]<class T>(std::string_view, Term<T>& term) {
+    if constexpr (requires { T::contact_pairs; }) {
+      T view = term.view;
+      view.elements = contact.span();
+      sum += objective::energy_of(view, s).sum;
+    }
   });
   return sum;
 }

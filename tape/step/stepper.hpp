@@ -30,7 +30,7 @@ struct AdhesionReport {
   Real normal = 0;      ///< [N] sum over pairs of the forces that hold them together
   Real tangential = 0;  ///< [N] sum over pairs of the magnitudes of the forces against sliding
   int live = 0;         ///< pairs that adhere
-  /// [m] the part of the first strip's length where it adheres: rest coordinates of the first and the last vertex of a live pair; from > to
+  /// [m] the part of the first strip's length where it adheres: rest coordinates of the first and the last place of a live pair; from > to
   /// without any. In a peel one of them is the front.
   Real from = std::numeric_limits<Real>::infinity(), to = -std::numeric_limits<Real>::infinity();
 };

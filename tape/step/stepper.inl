@@ -72,7 +72,11 @@ struct Adheres {
     AdhesionReport out;
     if (!f.live || (f.interface != interface && f.interface != turned)) return out;
     out.normal = f.normal, out.tangential = f.tangential, out.live = 1;
-    if (f.vertex < along.size) out.from = out.to = along[f.vertex];
+    if (f.vertex[0] < along.size) {
+      Real place = 0;
+      for (int k = 0; k < 3; ++k) place += f.weight[k] * along[f.vertex[k]];
+      out.from = out.to = place;
+    }
     return out;
   }
 };
@@ -250,12 +254,13 @@ class SideStepper final : public Stepper {
   void renew_memory(State& state, Real dt, StepReport& report) {
     if (!normals_) return;
     report.adhesion = adhesion();
-    const Real before = objective_->adhesive_energy(view(now_));
-    state.memory = remember(dt);
     StateView s = view(now_);
+    const Real adhesive = objective_->adhesive_energy(s), contact = objective_->contact_energy(s, replaced_, search_.surface());
+    state.memory = remember(dt);
     s.x_start = s.x;
     objective_->recall(state.memory, s, search_.surface());
-    report.adhesion_work += objective_->adhesive_energy(s) - before;
+    regained_ = contact - objective_->contact_energy(s, pairs_out_of_contact(state.memory), search_.surface());
+    report.adhesion_work += objective_->adhesive_energy(s) - adhesive + regained_;
   }
   std::vector<AdhesionReport> adhesion() {
     std::vector<AdhesionReport> out;
@@ -279,11 +284,12 @@ class SideStepper final : public Stepper {
     StateView s = view(now_);
     s.dt = dt;
     s.normal = normals_->at(s.x);
-    return objective_->remember(s);
+    return objective_->remember(s, search_.samples(s.x));
   }
   /// Candidates and elements of a step that starts at now_ with this memory.
   void recall(EffectMemory memory) {
-    search_.set_bonded(pairs_out_of_contact(memory));  // makes the search start anew: its past must not change the order of sums
+    replaced_ = pairs_out_of_contact(memory);
+    search_.set_bonded(replaced_);  // makes the search start anew: its past must not change the order of sums
     update_candidates(direction_.span());
     if (normals_) objective_->recall(memory, view(now_), search_.surface());
   }
@@ -379,7 +385,7 @@ class SideStepper final : public Stepper {
       if (const Real longest = world_.setup.scene.contact.max_move; way > longest)
         parallel_for(direction_.size(), stepping::Scale{direction_.span(), longest / way});
       update_candidates(direction_.span());
-      if (search_.candidates().size > 0) {
+      if (search_.candidates().size + search_.bonded().size > 0) {
         const Stopwatch watch(ccd_ms_);
         search_.limit_steps(coordinates_.paths(now_, direction_.span()), {.eta = world_.setup.scene.contact.ccd_gap});
         search_.scale(direction_.span());
@@ -411,6 +417,7 @@ class SideStepper final : public Stepper {
   void reset_times() {
     search_ms_ = assembly_ms_ = linear_ms_ = ccd_ms_ = line_search_ms_ = 0;
     searches_ = 0;
+    regained_ = 0;
     capped_before_ = search_.report().capped;
     objective_->for_each([](std::string_view, auto& term) { term.ms = 0; });
   }
@@ -423,10 +430,10 @@ class SideStepper final : public Stepper {
     objective_->for_each([&]<class T>(std::string_view name, Term<T>& term) {
       EffectReport line{.name = std::string(name), .ms = term.ms, .energy = 0, .elements = term.count};
       const bool stored = !requires { T::incremental; };
-      if (stored)
-        line.energy = reduce(term.view.elements.size, EnergySum{}, objective::ElementEnergy<T>{term.view, s}, objective::AddEnergies{}).sum;
+      if (stored) line.energy = objective::energy_of(term.view, s).sum;
       if constexpr (requires { T::contact_pairs; }) {
         const Span<const ContactPair> pairs = search_.candidates();
+        line.energy += regained_;
         report.candidates = pairs.size;
         report.active_pairs = term.count;
         report.min_gap = std::fmin(smallest_gap(pairs, s.x).gap, smallest_gap(search_.bonded(), s.x).gap);
@@ -453,6 +460,8 @@ class SideStepper final : public Stepper {
   Coordinates coordinates_;
   ContactSearch search_;
   std::optional<VertexNormals> normals_;  // where something adheres
+  std::vector<VertexTriangle> replaced_;  // pairs that are out of contact in this step
+  Real regained_ = 0;                     // [J] energy of contact that the end of the step let back, beyond that of the candidates
   LinearSolver linear_;
   std::optional<Objective> objective_;
   Configuration start_, now_, trial_;

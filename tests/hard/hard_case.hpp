@@ -7,8 +7,8 @@
 
 namespace tape::test {
 /// A scene that breaks solvers, stated in one place. Every case must keep the list at the head of checks.md, part 9: no intersection
-/// after any step, gaps above zero, no NaN, no limit reached in silence, energy that does not grow without a drive, and the same
-/// bits when run again.
+/// after any step, gaps above zero, no NaN, no limit reached in silence, energy that does not grow without a drive (less the booked work of
+/// adhesion that renews itself), and the same bits when run again.
 struct HardCase {
   std::string name;  ///< a word or two; the group first: HC1_...
   std::string what;  ///< what is hard about it
@@ -26,6 +26,7 @@ std::vector<HardCase> hard_cases();
 
 std::vector<HardCase> obstacle_cases();  ///< HC1: spikes, edges, cracks and holes
 std::vector<HardCase> stack_cases();     ///< HC6, HC10, HC12, HC20: stacks, pulls, time steps, mass ratios
+std::vector<HardCase> adhesion_cases();  ///< extreme settings; what is pressed, sheared, twisted, torn and wound
 std::vector<HardCase> own_cases();       ///< of the same kind: impact, crumpling, wrapping, rolling
 
 /// Strip of `length` and `cells` over the width, flat at height z, its middle at the origin; turned about the vertical.

@@ -126,7 +126,8 @@ std::vector<HardCase> own_cases() {
 
 std::vector<HardCase> hard_cases() {
   std::vector<HardCase> all;
-  for (const auto& group : {obstacle_cases(), stack_cases(), own_cases()}) all.insert(all.end(), group.begin(), group.end());
+  for (const auto& group : {obstacle_cases(), stack_cases(), adhesion_cases(), own_cases()})
+    all.insert(all.end(), group.begin(), group.end());
   return all;
 }
 }  // namespace tape::test

@@ -15,6 +15,7 @@ EffectWorld::EffectWorld(unsigned seed) : generator_(seed) {
   add_strip();
   add_bodies();
   add_pairs();
+  add_samples();
   add_grips();
   disturb();
 }
@@ -126,10 +127,33 @@ void EffectWorld::add_pairs() {
     }
   }
   mu = {0.5, 0.7, 0.7, 1.0};
-  scene.adhesives = {{0, 1, {AdhesionLaw::per_pair, {{true, true}, {true, true}}, {.cn = 0.675, .ct = 0.5, .beta0 = 0.8}, {}}},
-                     {1, 1, {AdhesionLaw::bond, {{true, true}, {true, true}}, {}, {.reach = 1, .floor = 0}}}};
+  scene.adhesives = {{0, 1, {AdhesionLaw::per_pair, {{true, true}, {true, true}}, {.cn = 0.675, .ct = 0.5, .beta0 = 0.8}, {}, {}}},
+                     {0, 0, {AdhesionLaw::per_area, {{true, true}, {true, true}}, {}, {.toughness = 5, .shear = 0.7, .reach = 1}, {}}},
+                     {1, 1, {AdhesionLaw::bond, {{true, true}, {true, true}}, {}, {}, {.reach = 1, .floor = 0}}}};
   for (int a : {0, 1})
     for (int b : {0, 1}) adhesion.push_back(scene.adhesion(a, b));
+}
+
+void EffectWorld::add_samples() {
+  const Real xi = 9e-5, dhat = scene.dhat();
+  for (Real gap : {0.3, 0.55, 0.9}) {
+    for (Real y : {5e-4, -1e-4}) {      // over the face; beside an edge
+      for (int triangle : {3, 1000}) {  // of a strip; of a body
+        const Mat3 R = rotation_exp(random_vector(3));
+        const Vec3 shift = random_vector(0.01);
+        const Vec3 point(5e-4, y, xi + gap * dhat), d0(1e-3, 0, 2e-5), d1(0, 1e-3, 0);
+        std::vector<Vec3> at{point + d0, point + d1, point - 0.4 * d0 - 0.6 * d1, Vec3(0, 0, 0), Vec3(2e-3, 0, 0), Vec3(0, 2e-3, 0)};
+        for (Vec3& p : at) p = shift + R * p;
+        const std::vector<int> v = add_vertices(at);
+        samples.push_back({.v = {v[0], v[1], v[2], v[3], v[4], v[5]},
+                           .w = {0.2, 0.3, 0.5},
+                           .interface = 0,
+                           .xi = xi,
+                           .area = 1e-6,
+                           .id = {static_cast<int>(samples.size()), triangle}});
+      }
+    }
+  }
 }
 
 void EffectWorld::disturb() {

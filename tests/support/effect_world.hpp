@@ -15,6 +15,7 @@ class EffectWorld {
   Scene scene;
   Assembly assembly;
   std::vector<ContactPair> pairs;
+  std::vector<SamplePair> samples;
   std::vector<Vec3> x, x_start, x_tilde;
   std::vector<Pose> body, body_target;
   std::vector<Vec3> grip_target;
@@ -28,6 +29,15 @@ class EffectWorld {
   StateView start_view() const;
   Real random(Real low, Real high) { return std::uniform_real_distribution<Real>(low, high)(generator_); }
   Vec3 random_vector(Real size) { return {random(-size, size), random(-size, size), random(-size, size)}; }
+  /// What an effect that remembers may remember.
+  template <class T>
+  const std::vector<typename T::Pair>& pairs_of() const {
+    if constexpr (Samples<T>) {
+      return samples;
+    } else {
+      return pairs;
+    }
+  }
   /// Moves everything as one rigid thing.
   void move(const Pose& by);
 
@@ -37,6 +47,7 @@ class EffectWorld {
   void add_bodies();
   void add_grips();
   void add_pairs();
+  void add_samples();
   void disturb();
   std::mt19937_64 generator_;
 };
@@ -58,7 +69,7 @@ struct Built {
     if constexpr (Remembers<T>) {
       const StateView start = world.start_view();
       typename T::Memory m;
-      for (const ContactPair& pair : world.pairs)
+      for (const auto& pair : world.pairs_of<T>())
         if (term.begin(pair, start, m)) elements.push_back(term.recall(m, pair, start));
     }
     term.elements = {elements.data(), static_cast<int>(elements.size())};

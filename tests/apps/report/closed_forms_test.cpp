@@ -40,3 +40,9 @@ TEST(ClosedForms, AGammaThatTheShootingDoesNotCoverIsRefused) {
 TEST(ClosedForms, HalfATurnAtFrictionThreeTenthsMultipliesThePull) {
   EXPECT_NEAR(capstan_ratio(0.3, std::numbers::pi), 2.56633, 5e-6);  // published table, five digits
 }
+
+TEST(ClosedForms, PeelForceFollowsKendall) {  // checks.md, part 5: the 19-mm vinyl tape, R = 264.12 J/m^2
+  const std::pair<Real, Real> known[] = {{0, 41.428}, {30, 24.431}, {60, 9.508}, {90, 4.947}, {120, 3.324}, {180, 2.500}};
+  for (const auto& [degrees, force] : known)
+    EXPECT_NEAR(0.019 * peel_force(264.12, degrees * std::numbers::pi / 180, 50e6 * 1.8e-4), force, 2e-4 * force) << degrees;
+}

@@ -117,6 +117,20 @@ TEST_F(StudyCommand, AgainstTheFinestRunMeasuresStatesOnDifferentMeshes) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(read(folder / "out" / "study.csv"), HasSubstr("finest"));
 }
+TEST_F(StudyCommand, RunsAreComparedWithTheFinestOfTheirKind) {
+  const std::string study =
+      folder.file("study.yaml", std::string(kStudy) + "against: {finest: true, of_each: [time.dt]}\nmeasure: max_strain\n");
+  const Outcome outcome = tapesim({"study", study, "--out", (folder / "out").string()});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  std::istringstream csv(read(folder / "out" / "study.csv"));
+  std::string line;
+  std::getline(csv, line);
+  EXPECT_THAT(line, testing::StartsWith("run,time.dt,strip.cells_across,max_strain,error,seconds"));
+  for (bool finest : {false, true, false, true}) {
+    std::getline(csv, line);
+    EXPECT_EQ(line.ends_with(",finest"), finest) << line;
+  }
+}
 TEST_F(StudyCommand, AMistakeInAnyRunIsFoundBeforeTheFirst) {
   const std::string study = folder.file(
       "study.yaml", "study: late\nscene: small.yaml\ngrid: {time.dt: [0.05, -1]}\nagainst: {finest: true}\nset: {time.duration: 1000}\n");
@@ -138,7 +152,8 @@ TEST_F(StudyCommand, CtrlCKeepsTheRunsThatAreDone) {
 }
 TEST_F(StudyCommand, AMistakeInTheStudyExitsWithTwo) {
   for (const char* end : {"against: {closed_form: magic}\n", "against: {}\n", "against: {finest: true}\nmeasure: weight\n",
-                          "against: {finest: true}\ngird: 3\n", "against: {closed_form: capstan, angle_deg: 180}\n"}) {
+                          "against: {finest: true}\ngird: 3\n", "against: {finest: true, of_each: [time.de]}\n",
+                          "against: {closed_form: capstan, angle_deg: 180}\n"}) {
     const Outcome outcome = tapesim({"study", folder.file("study.yaml", std::string(kStudy) + end), "--out", (folder / "out").string()});
     EXPECT_EQ(outcome.exit_code, 2) << end;
     EXPECT_THAT(outcome.err, HasSubstr("tapesim: ")) << end;

@@ -112,6 +112,15 @@ TEST(ContactSearch, CandidatesHoldEveryPairThatComesNearAlongRandomMotion) {
   }
 }
 
+TEST(ContactSearch, PathBoxesAreFiniteHoweverSmallTheTurn) {  // Newton's last updates: a norm underflows before a component does
+  for (Real turn : {1e-300, 1e-200, 1e-161, 1e-100, 1e-20, 1e-3}) {
+    const VertexPath path{Vec3::Zero(), Vec3(1e-3, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, turn)};
+    const Box box = path_box(path);
+    ASSERT_TRUE(box.low.allFinite() && box.high.allFinite()) << turn;
+    for (Real t : {0.0, 0.5, 1.0}) EXPECT_TRUE(box.contains({path.at(t), path.at(t)})) << turn << " at " << t;
+  }
+}
+
 TEST(ContactSearch, CandidatesHoldEveryPairOfRollsAndFolds) {
   for (const test::Surface& s : {test::wound_strip(1.3, 2.7e-4, kXi), test::folded_strip(3, 10, 2.7e-4, kXi)}) {
     Scene scene(s);
@@ -354,4 +363,55 @@ TEST(ContactSearch, AnEmptySurfaceHasNoCandidates) {
   search.update(scene.paths(), 0);
   EXPECT_EQ(search.candidates().size, 0);
   EXPECT_TRUE(search.limit_steps(scene.paths(), {}).empty());
+}
+
+TEST(ContactSearch, SamplesFindEveryTriangleInReach) {
+  for (const test::Surface& surface : {test::wound_strip(1.3, 2.7e-4, kXi), test::scattered_triangles(60, 0.2, 0.01, 3)}) {
+    const Real dhat = surface.mesh.vertices[0].xi == kXi ? kDhat : 0.02;
+    Scene scene(surface);
+    scene.jiggle(dhat, 5);
+    ContactSearch search(scene.mesh(), dhat, dhat);
+    search.update(scene.paths(), dhat / 4);
+    scene.move(0.7);  // within the trust boxes
+    const std::vector<Vec3>& x = scene.surface.x;
+    const std::vector<SurfaceTriangle>& triangles = scene.mesh().triangles;
+    const on_cpu::detail::SampleQuery query = search.samples({x.data(), static_cast<int>(x.size())});
+    constexpr int kSide = 3;
+    std::set<std::pair<int, int>> found, near;
+    for (int sample = 0; sample < static_cast<int>(triangles.size()) * kSide * kSide; ++sample) {
+      query.visit(sample, kSide, [&](const SamplePair& p, Real) { found.insert({p.id.sample, p.id.triangle}); });
+      const SurfaceTriangle& own = triangles[static_cast<std::size_t>(sample / (kSide * kSide))];
+      for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
+        const SurfaceTriangle& other = triangles[static_cast<std::size_t>(t)];
+        const Vec3 point = query.s.sample_triangle(sample, t, kSide).point(query.x);
+        const Vec3 at[4] = {point, x[static_cast<std::size_t>(other.v[0])], x[static_cast<std::size_t>(other.v[1])],
+                            x[static_cast<std::size_t>(other.v[2])]};
+        const Real d = combine(closest_vertex_triangle(at).weight, at).norm();
+        const bool apart = std::ranges::find_first_of(own.v, other.v) == std::end(own.v);
+        if (apart && d < 2 * scene.mesh().vertices[0].xi + dhat) near.insert({sample, t});
+      }
+    }
+    EXPECT_FALSE(near.empty());
+    EXPECT_EQ(found, near);
+  }
+}
+
+TEST(ContactSearch, SamplesOfATriangleAreTheCentroidsOfEqualPieces) {  // so that they integrate linear functions, and the area
+  const test::Surface surface = test::wound_strip(0.1, 2.7e-4, kXi);
+  const on_cpu::detail::SurfaceBuffers buffers(surface.mesh, kDhat, kDhat);
+  for (int n : {1, 2, 3, 5}) {
+    Real area = 0;
+    Vec3 mean = Vec3::Zero();
+    std::set<std::pair<long, long>> places;
+    for (int k = 0; k < n * n; ++k) {
+      const SamplePair p = buffers.view().sample_triangle(7 * n * n + k, 0, n);
+      area += p.area;
+      mean += Vec3(p.w[0], p.w[1], p.w[2]) / (n * n);
+      for (Real w : p.w) EXPECT_GT(w, 0);
+      places.insert({std::lround(3 * n * p.w[0]), std::lround(3 * n * p.w[1])});
+    }
+    EXPECT_NEAR(area, surface.mesh.triangles[7].area, 1e-15);
+    EXPECT_LT((mean - Vec3::Constant(1.0 / 3)).norm(), 1e-15);
+    EXPECT_EQ(places.size(), static_cast<std::size_t>(n * n)) << "no two are the same";
+  }
 }

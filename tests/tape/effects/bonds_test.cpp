@@ -16,7 +16,7 @@ struct Bonded {
   BondLaw law;
   std::vector<Vec3> start{{kSide / 3, kSide / 3, kRest}, {0, 0, 0}, {0, kSide, 0}, {kSide, 0, 0}}, x = start;
   std::vector<Vec3> normal = std::vector<Vec3>(4, Vec3(0, 0, 1));
-  std::vector<Adhesion> adhesion{{AdhesionLaw::bond, {{false, false}, {false, true}}, {}, {}}};
+  std::vector<Adhesion> adhesion{{AdhesionLaw::bond, {{false, false}, {false, true}}, {}, {}, {}}};
   ContactPair pair{.v = {0, 1, 2, 3},
                    .kind = PairKind::vertex_triangle,
                    .interface = 0,

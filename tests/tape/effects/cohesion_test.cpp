@@ -13,7 +13,7 @@ struct Stuck {
   PairCohesion law{.cn = 0.675, .ct = 0.675, .beta0 = 1};
   std::vector<Vec3> start{{3e-4, 3e-4, kRest}, {0, 0, 0}, {0, 1e-3, 0}, {1e-3, 0, 0}}, x = start;
   std::vector<Vec3> normal = std::vector<Vec3>(4, Vec3(0, 0, 1));
-  std::vector<Adhesion> adhesion{{AdhesionLaw::per_pair, {{false, false}, {false, true}}, {}, {}}};
+  std::vector<Adhesion> adhesion{{AdhesionLaw::per_pair, {{false, false}, {false, true}}, {}, {}, {}}};
   ContactPair pair{.v = {0, 1, 2, 3},
                    .kind = PairKind::vertex_triangle,
                    .interface = 0,
@@ -42,7 +42,7 @@ struct Stuck {
     cohesion.elements = {&element, 1};
     return view(x);
   }
-  Cohesion::Memory engaged(Real beta = 1) const { return {0, 7, beta, {0, 0}}; }
+  Cohesion::Memory engaged(Real beta = 1) const { return {{0, 7}, beta, {0, 0}}; }
 };
 }  // namespace
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <sstream>
 
+#include "tape/math/rotation.hpp"
 #include "tests/support/derivatives.hpp"
 using namespace tape;
 
@@ -86,7 +87,7 @@ struct Lagged {
   std::vector<Friction::Element> elements;
   Friction friction;
   StateView view{};
-  explicit Lagged(const Published& p) : friction{{}, std::sqrt(p.eps2), {{}, 1}} {
+  explicit Lagged(const Published& p) : friction{{}, std::sqrt(p.eps2), SlipFrame::fixed, {{}, 1}} {
     view.dt = 1;
     view.x = view.x_start = span(p.lagged);
     view.mu = {&p.mu, 1};
@@ -110,7 +111,7 @@ struct Slider {
   Real mu = 0.5;
   ContactPair pair{{0, 1, 2, 3}, PairKind::vertex_triangle, 0, 0, 1e-3, 1e-6, 0, {}};
   std::vector<Friction::Element> elements;
-  Friction friction{{}, 1e-4, {{}, 1e6}};
+  Friction friction{{}, 1e-4, SlipFrame::turning, {{}, 1e6}};
   explicit Slider(Real slip) : start{{2e-4, 2e-4, 5e-4}, {0, 0, 0}, {1e-3, 0, 0}, {0, 1e-3, 0}}, x(start) {
     Friction::Element e;
     if (friction.lag(pair, view(1), e)) elements.push_back(e);
@@ -184,6 +185,16 @@ TEST(Friction, SlidingCostsMuTimesTheNormalForceWhateverTheTimeStep) {
       EXPECT_NEAR(g[0], 0.5 * s.normal_force(), 1e-12 * s.normal_force());
       EXPECT_NEAR(s.friction.energy(s.view(dt), 0), 0.5 * s.normal_force() * slip, 1e-12 * s.normal_force() * slip);
     }
+  }
+}
+TEST(Friction, APairThatTurnsAsAWholeDoesNotSlipInItsOwnFrame) {  // two layers of a roll that turns by 0.05 rad in a step
+  for (SlipFrame frame : {SlipFrame::turning, SlipFrame::fixed}) {
+    Slider s(0);
+    s.friction.frame = frame;
+    const Pose by{rotation_exp(Vec3(0, 0.05, 0)), Vec3(1e-3, 0, 2e-3)};
+    for (Vec3& p : s.x) p = apply(by, p);
+    const Vec2 slip = s.friction.slip(s.view(0.01), 0);
+    EXPECT_NEAR(slip.norm(), frame == SlipFrame::turning ? 0 : 5e-4 * std::sin(0.05), 1e-15) << "distance times angle";
   }
 }
 TEST(Friction, BelowTheSmoothingSpeedTheForceGrowsFromNothing) {  // f1 = 2 r - r^2, r = speed/eps_v

@@ -21,7 +21,7 @@ Setup ceiling(AdhesionLaw law) {
   Setup setup = test::strip_setup(strip);
   test::add_body(setup, "ceiling", box_mesh(Vec3(0.06, 0.04, 0.01), {12, 8, 1}), Motion::fixed, Vec3(0, 0, 0.005)).material = 1;
   setup.scene.materials.push_back({"plaster", 0.5});
-  Adhesion adhesion{law, {}, {.cn = 0.675, .ct = 0.675, .beta0 = 1}, {}};
+  Adhesion adhesion{law, {}, {.cn = 0.675, .ct = 0.675, .beta0 = 1}, {.reach = 1}, {}};
   std::copy(&kTrue[0][0], &kTrue[0][0] + 4, &adhesion.sticks[0][0]);
   setup.scene.adhesives = {{0, 1, adhesion}};
   return setup;
@@ -31,6 +31,7 @@ Real lowest(const test::Simulation& s) {
   for (const Vec3& p : s.state().x) z = std::min(z, p.z());
   return z;
 }
+constexpr AdhesionLaw kLaws[] = {AdhesionLaw::per_pair, AdhesionLaw::per_area, AdhesionLaw::bond};
 int remembered(const State& state) {
   EffectMemory memory = state.memory;
   int n = 0;
@@ -40,7 +41,7 @@ int remembered(const State& state) {
 }  // namespace
 
 TEST(Adhesion, HoldsAStripUnderACeilingAndWithoutItFalls) {
-  for (AdhesionLaw law : {AdhesionLaw::per_pair, AdhesionLaw::bond}) {
+  for (AdhesionLaw law : kLaws) {
     test::Simulation s(ceiling(law));
     s.run_to(0.3);
     EXPECT_TRUE(s.broken.empty()) << s.broken.front();
@@ -67,7 +68,7 @@ TEST(Adhesion, TheBackingDoesNotStick) {
   EXPECT_LT(lowest(s), -0.04);
 }
 TEST(Adhesion, SavedAndResumedItGoesOnToTheBit) {
-  for (AdhesionLaw law : {AdhesionLaw::per_pair, AdhesionLaw::bond}) {
+  for (AdhesionLaw law : kLaws) {
     const tape::Setup setup = ceiling(law);
     test::Simulation through(setup), first(setup), second(setup);
     const std::string file = (std::filesystem::temp_directory_path() / ("tape_adhesion_test_" + std::to_string(getpid()) + ".h5")).string();
@@ -86,7 +87,7 @@ TEST(Adhesion, SavedAndResumedItGoesOnToTheBit) {
   }
 }
 TEST(Adhesion, HasTheSameBitsForAnyNumberOfThreads) {
-  for (AdhesionLaw law : {AdhesionLaw::per_pair, AdhesionLaw::bond}) {
+  for (AdhesionLaw law : kLaws) {
     std::vector<std::string> hashes;
     for (int threads : {1, 2, 8}) {
       set_threads(threads);
@@ -101,7 +102,7 @@ TEST(Adhesion, HasTheSameBitsForAnyNumberOfThreads) {
 }
 TEST(Adhesion, AStepFromTheStartDependsOnNothingThatWasDoneBefore) {
   // The first try of a step that is made again at half its length leaves candidates without the pairs that it bonded.
-  for (AdhesionLaw law : {AdhesionLaw::per_pair, AdhesionLaw::bond}) {
+  for (AdhesionLaw law : kLaws) {
     test::Simulation s(ceiling(law));
     const State start = s.state();
     s.step();
@@ -129,4 +130,66 @@ TEST(Adhesion, NoEnergyComesFromNowhereOnceItsRenewalIsBooked) {
     booked += std::fabs(s.report().adhesion_work);
   }
   EXPECT_GT(booked, 1e-5 * scale) << "something was renewed";
+}
+
+namespace {
+/// A strip stands on one corner over the face of a fixed tetrahedron of area 5.0139e-6 m^2 (T5), bonded: one pair, nothing else near.
+/// A spring of 10 N/m, so soft that it is a force, draws the corner along z.
+class BondedCorner {
+ public:
+  /// @param force  [N] at the end of `time`, reached linearly; up: positive
+  BondedCorner(Real force, Real time) : simulation(setup(force, time)) {}
+  test::Simulation simulation;
+  const AdhesionReport& bond() const { return simulation.report().adhesion[0]; }
+  /// [m] of the corner over the face.
+  Real height() const { return simulation.state().x[0].z(); }
+
+ private:
+  static tape::Setup setup(Real force, Real time) {
+    const Film film = test::vinyl();
+    const Real s = 3.1667e-3;
+    Strip strip = test::flat_strip(0.019, 1, Vec3::Zero());
+    // The rest corner (0, -width/2) comes to stand over the face's middle, the strip upright on it.
+    strip.pose.rotation = rotation_exp(Vec3(0, -std::numbers::pi / 4, 0)) * rotation_exp(Vec3(std::numbers::pi / 2, 0, 0));
+    strip.pose.position = Vec3(s / 3, s / 3, film.xi + 0.9 * film.dhat) - strip.pose.rotation * Vec3(0, -0.0095, 0);
+    tape::Setup setup = test::strip_setup(strip);
+    TriangleMesh tetrahedron;
+    tetrahedron.vertices = {{0, 0, 0}, {s, 0, 0}, {0, s, 0}, {s / 3, s / 3, -s}};
+    tetrahedron.triangles = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
+    test::add_body(setup, "face", tetrahedron, Motion::fixed, Vec3::Zero()).material = 1;
+    setup.scene.materials.push_back({"plaster", 0.5});
+    setup.scene.gravity.setZero();
+    setup.scene.adhesives = {{0, 1, {AdhesionLaw::bond, {{true, true}, {true, true}}, {}, {}, {}}}};
+    Grip pull = test::hold("pull", {0}), others = test::hold("others", {1, 2, 3});
+    pull.stiffness = 10;
+    pull.motion = {{0, Vec3::Zero()}, {time, Vec3(0, 0, force / pull.stiffness)}};
+    others.stiffness = 1;
+    setup.scene.grips = {pull, others};
+    setup.newton.velocity_tol = 1e-5;
+    return setup;
+  }
+};
+}  // namespace
+
+TEST(BondedPair, PressedWithMoreThanTheBondAloneWithstandsItNeitherCrossesNorReleases) {  // T5: alone it gives way at 2.57 N
+  for (Real force : {1.0, 2.0, 2.6, 5.0}) {
+    BondedCorner corner(-force, 0.2);
+    corner.simulation.run_to(0.5, [&](const test::Simulation&) {
+      EXPECT_GT(corner.height(), 0);
+      EXPECT_EQ(corner.bond().live, 1);
+    });
+    EXPECT_TRUE(corner.simulation.broken.empty()) << corner.simulation.broken.front();
+    EXPECT_NEAR(-corner.bond().normal, force, 0.02 * force) << "it carries the load";
+  }
+}
+TEST(BondedPair, PulledItReleasesAtTheThreshold) {
+  BondedCorner corner(1, 1);  // 0.01 N a step
+  Real last = 0;
+  corner.simulation.run_to(1, [&](const test::Simulation&) {
+    if (corner.bond().live == 1) last = corner.bond().normal;
+  });
+  EXPECT_TRUE(corner.simulation.broken.empty()) << corner.simulation.broken.front();
+  EXPECT_EQ(corner.bond().live, 0);
+  EXPECT_GT(last, 0.5);
+  EXPECT_LT(last, 0.5 + 0.02) << "in the step that passed 0.5 N";
 }

@@ -36,21 +36,22 @@ std::set<std::string> launched_kernels() {
     auto setup = test::strip_setup(test::flat_strip(0.04, 3, Vec3(-0.02, 0, 3e-4)));
     setup.linear.linear = linear;
     test::add_body(setup, "table", box_mesh(Vec3(0.1, 0.06, 0.01)), Motion::fixed, Vec3(0, 0, -0.005));
-    test::add_body(setup, "box", box_mesh(Vec3(0.01, 0.01, 0.01)), Motion::dynamic, Vec3(0, 0, 0.0056));
+    test::add_body(setup, "box", box_mesh(Vec3(0.01, 0.01, 0.01)), Motion::dynamic, Vec3(-0.012, 0, 0.0056)).material = 2;
+    test::add_body(setup, "lid", box_mesh(Vec3(0.01, 0.01, 0.01)), Motion::dynamic, Vec3(0.005, 0, 0.0056)).material = 3;
     test::add_body(setup, "pusher", box_mesh(Vec3(0.01, 0.01, 0.01)), Motion::driven, Vec3(0, 0.03, 0.006)).velocity = Vec3(0, -0.1, 0);
     Grip grip;
     grip.name = "pull";
     grip.what = {.object = "tape", .vertices = {0, 1, 2, 3}, .points = {}};
     setup.scene.grips.push_back(grip);
-    setup.scene.materials.push_back({"steel", 0.5});
+    for (const char* name : {"steel", "wood", "glass"}) setup.scene.materials.push_back({name, 0.5});
     setup.scene.bodies[0].material = 1;
-    for (const AdhesionLaw law : {AdhesionLaw::per_pair, AdhesionLaw::bond}) {  // to the table, and to box and pusher
-      setup.scene.adhesives.push_back(
-          {0, law == AdhesionLaw::bond ? 0 : 1, {law, {{true, true}, {true, true}}, {.beta0 = 1}, {.floor = 0}}});
+    for (const auto& [material, law] : {std::pair{1, AdhesionLaw::per_pair}, {2, AdhesionLaw::bond}, {3, AdhesionLaw::per_area}}) {
+      setup.scene.adhesives.push_back({0, material, {law, {{true, true}, {true, true}}, {.beta0 = 1}, {.reach = 1}, {.floor = 0}}});
     }
     test::Simulation simulation(setup);
     for (int k = 0; k < 5; ++k) simulation.step();
     EXPECT_TRUE(simulation.broken.empty()) << simulation.broken.front();
+    for (const AdhesionReport& interface : simulation.report().adhesion) EXPECT_GT(interface.live, 0);
   }
   record_launches(false);
   return recorded_launches();
