@@ -1,38 +1,30 @@
 #include "cosim/roll/roll_store.hpp"
 
-#include <cstdint>
 #include <cstdlib>
 #include <fstream>
 #include <optional>
 
 #include "cosim/run/new_file.hpp"
 #include "tape/core/error.hpp"
+#include "tape/core/hash.hpp"
 
 namespace cosim {
 namespace {
-/// 64-bit FNV-1a of bytes, going on from `hash`.
-std::uint64_t fnv(const char* data, std::size_t size, std::uint64_t hash) {
-  for (std::size_t i = 0; i < size; ++i) hash = (hash ^ static_cast<unsigned char>(data[i])) * 0x100000001b3;
-  return hash;
-}
-
 /// Of the program that runs: another build may settle rolls otherwise.
-std::uint64_t program_hash() {
-  static const std::uint64_t hash = [] {
+const Hash& program_hash() {
+  static const Hash hash = [] {
     std::ifstream file("/proc/self/exe", std::ios::binary);
-    std::uint64_t h = 0xcbf29ce484222325;
-    for (char block[1 << 16]; file.read(block, sizeof block) || file.gcount() > 0;)
-      h = fnv(block, static_cast<std::size_t>(file.gcount()), h);
+    Hash h;
+    for (char block[1 << 16]; file.read(block, sizeof block) || file.gcount() > 0;) h.add(block, static_cast<std::size_t>(file.gcount()));
     return h;
   }();
   return hash;
 }
 
 std::filesystem::path file_of(const std::string& settings) {
-  char name[32];
-  std::snprintf(name, sizeof name, "roll-%016llx.h5",
-                static_cast<unsigned long long>(fnv(settings.data(), settings.size(), program_hash())));
-  return roll_store() / name;
+  Hash hash = program_hash();
+  hash.add(settings.data(), settings.size());
+  return roll_store() / ("roll-" + hash.text() + ".h5");
 }
 
 /// A file of the store that cannot be read is as good as none.

@@ -28,6 +28,7 @@ struct Barrier {
     return {{v[0], v[1], v[2], v[3]}};
   }
   TAPE_HD bool active(const StateView& s, int i) const {
+    if (far_apart(elements[i], s.x, elements[i].xi + elements[i].dhat)) return false;
     const PairState p = PairState::at(elements[i], s.x);
     return reaches(p, elements[i]) && p.fade.value > 0;
   }
@@ -38,6 +39,7 @@ struct Barrier {
 
   TAPE_HD Real energy(const StateView& s, int i) const {
     const ContactPair& pair = elements[i];
+    if (far_apart(pair, s.x, pair.xi + pair.dhat)) return 0;
     const PairState at = PairState::at(pair, s.x);
     if (!(at.d > pair.xi)) return at.fade.value > 0 ? barrier(at, pair).value : 0;
     Real sum = 0;

@@ -3,6 +3,16 @@
 #include "tape/math/mollifier.hpp"
 
 namespace tape {
+/// Whether a pair is farther apart than `reach` [m] along its common normal, that of the triangle or of both edges: then so are its closest
+/// points. Most candidates are, and need no more.
+TAPE_HD inline bool far_apart(const ContactPair& pair, Span<const Vec3> x, Real reach) {
+  const Vec3 &a = x[pair.v[0]], &b = x[pair.v[1]], &c = x[pair.v[2]], &d = x[pair.v[3]];
+  const bool face = pair.kind == PairKind::vertex_triangle;
+  const Vec3 normal = face ? (c - b).cross(d - b) : (b - a).cross(d - c), offset = face ? a - b : a - c;
+  const Real height = normal.dot(offset);
+  return height * height > reach * reach * normal.squaredNorm();
+}
+
 /// A contact pair at a configuration: its closest points, or those of one of its features, and how parallel its edges are.
 struct PairState {
   Vec3 x[4];

@@ -1,10 +1,9 @@
 #include "tape/step/world.hpp"
 
-#include <cstring>
-
 #include "tape/bodies/free_flight.hpp"
 #include "tape/contact/containment.hpp"
 #include "tape/contact/intersection.hpp"
+#include "tape/core/hash.hpp"
 #include "tape/math/rotation.hpp"
 #include "tape/model/motion.hpp"
 #include "tape/step/roll_gaps.hpp"
@@ -71,29 +70,24 @@ State State::start(const World& world) {
 }
 
 std::string State::hash() const {
-  std::uint64_t h = 0xcbf29ce484222325;  // FNV-1a, 64 bits
-  const auto add = [&](const void* data, std::size_t bytes) {
-    for (std::size_t i = 0; i < bytes; ++i) h = (h ^ static_cast<const unsigned char*>(data)[i]) * 0x100000001b3;
-  };
-  add(&step, sizeof step);
-  add(&time, sizeof time);
-  add(x.data(), x.size() * sizeof(Vec3));
-  add(v.data(), v.size() * sizeof(Vec3));
+  Hash hash;
+  hash.add(&step, sizeof step);
+  hash.add(&time, sizeof time);
+  hash.add(x.data(), x.size() * sizeof(Vec3));
+  hash.add(v.data(), v.size() * sizeof(Vec3));
   for (const BodyState& b : bodies) {
-    add(b.pose.rotation.data(), sizeof(Mat3));
-    add(b.pose.position.data(), sizeof(Vec3));
-    add(b.velocity.data(), sizeof(Vec3));
-    add(b.angular_momentum.data(), sizeof(Vec3));
+    hash.add(b.pose.rotation.data(), sizeof(Mat3));
+    hash.add(b.pose.position.data(), sizeof(Vec3));
+    hash.add(b.velocity.data(), sizeof(Vec3));
+    hash.add(b.angular_momentum.data(), sizeof(Vec3));
   }
-  add(grip_base.data(), grip_base.size() * sizeof(Vec3));
-  add(grip_closed.data(), grip_closed.size() * sizeof(int));
+  hash.add(grip_base.data(), grip_base.size() * sizeof(Vec3));
+  hash.add(grip_closed.data(), grip_closed.size() * sizeof(int));
   EffectMemory copy = memory;
   for_each_memory(copy, [&](auto& pairs) {
-    for (auto& pair : pairs) pair.visit([&](auto& value) { add(&value, sizeof value); });
+    for (auto& pair : pairs) pair.visit([&](auto& value) { hash.add(&value, sizeof value); });
   });
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(h));
-  return text;
+  return hash.text();
 }
 
 std::vector<Vec3> vertex_positions(const World& world, const State& state) {

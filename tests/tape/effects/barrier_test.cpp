@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <random>
 
 #include "tests/support/derivatives.hpp"
 #include "tests/support/effect_world.hpp"
@@ -181,6 +182,23 @@ TEST(Barrier, OutOfReachAPairIsNotActive) {
       out(PairKind::edge_edge, crossing(1, 9e-5 + 1.001 * kDhat), kFade);
   EXPECT_TRUE(in.barrier.active(in.view(), 0));
   EXPECT_FALSE(out.barrier.active(out.view(), 0));
+}
+TEST(Barrier, WhatIsFarApartAlongTheNormalIsFarApart) {
+  std::mt19937_64 generator(3);
+  std::uniform_real_distribution<Real> place(-1e-3, 1e-3);
+  for (PairKind kind : {PairKind::vertex_triangle, PairKind::edge_edge}) {
+    int far = 0;
+    for (int k = 0; k < 2000; ++k) {
+      Pair p(kind, {});
+      for (int i = 0; i < 4; ++i) p.x.emplace_back(place(generator), place(generator), place(generator));
+      if (!far_apart(p.pair, p.view().x, 2.7e-4)) continue;
+      ++far;
+      EXPECT_GT(PairState::at(p.pair, p.view().x).d, 2.7e-4 * (1 - 1e-12));
+    }
+    EXPECT_GT(far, 500);
+    const Pair flat(kind, std::vector<Vec3>(4, Vec3::Zero()));
+    EXPECT_FALSE(far_apart(flat.pair, flat.view().x, 2.7e-4)) << "no normal: nothing is said";
+  }
 }
 TEST(Barrier, IsNeededByAStripOrByTwoBodiesOfWhichOneMoves) {
   Scene scene;
