@@ -214,7 +214,7 @@ class SceneReader {
   Side side(const Reader& name) {
     const std::string text = name.text();
     const bool sticky = text.ends_with(".sticky"), backing = text.ends_with(".backing");
-    const Side out{materials_of(name, text.substr(0, text.size() - (sticky ? 7 : backing ? 8 : 0))), {!sticky, !backing}};
+    Side out{materials_of(name, text.substr(0, text.size() - (sticky ? 7 : backing ? 8 : 0))), {!sticky, !backing}};
     for (int m : out.materials)
       if ((sticky || backing) && !of_strip(m)) name.fail("is no strip: only strips have a sticky face and a backing");
     return out;
