@@ -100,7 +100,7 @@ class Studio {
       const RecordedFrame frame = recording_.frame(i);
       const std::vector<Vec3> x = vertex_positions(recording_.mesh(), frame);
       for (const Vec3& p : x) everything_.extend(p);
-      if (params_.view.color == ColorBy::material) continue;
+      if (params_.view.color == ColorBy::material || params_.view.color == ColorBy::adhesion) continue;
       largest.push_back(0);
       for (const Real value : values(frame, x))
         if (value > largest.back()) largest.back() = value;

@@ -22,7 +22,7 @@ namespace tape {
 ///   static constexpr bool free_vertices = true the stencil names strip vertices only: nothing to relocate
 ///   static constexpr bool incremental = true   its energy belongs to the step and is not stored: inertia, friction
 ///   static constexpr bool contact_pairs = true elements are the candidates of the contact search
-///   using Pair                                 ContactPair, or SamplePair: then samples(), count() say how many there are
+///   using Pair                                 ContactPair, or SamplePair: then `samples` to a side and count() in all
 ///   struct Memory : Pair::Name                 what it remembers of a pair from step to step, with visit(f) over all its members (Real or
 ///                                              int):
 ///     Element recall(memory, pair, s)          the element of a remembered pair, at the start of each step

@@ -86,6 +86,17 @@ TEST(SettledRoll, StaysWoundWhereItAdheresAndSpringsOpenWhereItDoesNot) {
   }
 }
 
+TEST(LongSettledRoll, StaysWoundThoughItsLayersCreep) {  // slip from the start of each step, the default
+  cosim::RunInput input = roll_input({"gravity=[0,0,0]"});
+  cosim::place_roll(settled(), 0, input.setup);
+  const World world = World::build(input.setup);
+  const std::unique_ptr<Stepper> stepper = make_stepper(Backend::cpu, world);
+  State state = State::start(world);
+  const Real before = wound_radius(world, state);
+  for (int i = 0; i < 1000; ++i) ASSERT_TRUE(stepper->step(state).ok) << i;
+  EXPECT_LT(wound_radius(world, state), 1.02 * before);
+}
+
 TEST(SettledRoll, FallsAsOneBodyUntilItTouches) {
   for (const char* tolerance : {"1e-1", "1e-2", "1e-3"}) {
     cosim::RunInput input = roll_input({std::string("solver.velocity_tol=") + tolerance});
