@@ -29,6 +29,7 @@ demo: build
 CTEST := ctest --output-on-failure --no-tests=error --parallel $(JOBS)
 test: build
 	$(CTEST) --test-dir $(BUILD) --label-exclude long
+	@sed -n '/^case /,/cases in/p' $(BUILD)/Testing/Temporary/LastTest.log
 
 bench: build
 	@for program in $$(find $(BUILD)/bench -type f -perm -u+x | sort); do echo "== $$program"; $$program || exit 1; done
@@ -37,7 +38,7 @@ lint:
 	@bash cmake/lint.sh
 
 format:
-	clang-format -i $$(find tape robot cosim apps tests -name '*.[ch]pp' -o -name '*.inl' -o -name '*.cu')
+	clang-format -i $$(find tape cosim apps tests -name '*.[ch]pp' -o -name '*.inl' -o -name '*.cu')
 
 build-%: deps-check
 	cmake --preset $*

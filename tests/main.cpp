@@ -1,4 +1,6 @@
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
 #include <cstdint>
 #include <cstdlib>
@@ -24,5 +26,10 @@ int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
   if (const char* seed = std::getenv("TAPE_SHUFFLE"))
     testing::UnitTest::GetInstance()->listeners().Append(new ShuffledIterations(std::stoull(seed)));
-  return RUN_ALL_TESTS();
+  // So that set_threads(8) means eight threads on a machine of two cores.
+  const tbb::global_control most(tbb::global_control::max_allowed_parallelism, 8);
+  tbb::task_arena arena(8);
+  arena.initialize();
+  tape::set_threads(0);
+  return arena.execute([] { return RUN_ALL_TESTS(); });
 }

@@ -5,31 +5,10 @@
 #include <utility>
 
 #include "tape/core/error.hpp"
+#include "tape/core/hdf5_handle.hpp"
 
 namespace cosim {
 namespace {
-/// Closes an object of the library when it goes out of scope; converts to its id.
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-  ~Handle() {
-    if (id_ >= 0) close_(id_);
-  }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  operator hid_t() const { return id_; }
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
-
-/// The library prints its own messages unless told otherwise.
-void be_quiet() {
-  H5dont_atexit();  // its clean-up crashes where a file could not be closed for want of space
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-}
-
 hsize_t product(const Shape& shape) { return std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>()); }
 
 /// Layout of a growing array: chunks of one row, packed.
@@ -48,9 +27,9 @@ hid_t row_layout(const Shape& row_shape) {
 }  // namespace
 
 Hdf5Writer::Hdf5Writer(const std::filesystem::path& name) : file_(name) {
-  be_quiet();
+  tape::silence_hdf5();
   constexpr std::size_t kGrowth = 1 << 20;  // [bytes]
-  const Handle memory(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  const tape::Hdf5Handle memory(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_fapl_core(memory, kGrowth, false);
   id_ = H5Fcreate(file_.name().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, memory);
   require(id_ >= 0);
@@ -65,8 +44,8 @@ void Hdf5Writer::require(bool success) const {
 }
 
 void Hdf5Writer::write(const std::string& array, const void* values, hid_t type, const Shape& shape) {
-  const Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
-  const Handle data(H5Dcreate2(id_, array.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+  const tape::Hdf5Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
+  const tape::Hdf5Handle data(H5Dcreate2(id_, array.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
   require(data >= 0);
   if (product(shape) > 0) require(H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
 }
@@ -77,22 +56,23 @@ void Hdf5Writer::append(const std::string& array, const void* row, hid_t type, c
     Shape unlimited = row_shape;
     unlimited.insert(unlimited.begin(), H5S_UNLIMITED);
     size.insert(size.begin(), 0);
-    const Handle space(H5Screate_simple(static_cast<int>(size.size()), size.data(), unlimited.data()), H5Sclose);
-    const Handle layout(row_layout(row_shape), H5Pclose);
-    const Handle data(H5Dcreate2(id_, array.c_str(), type, space, H5P_DEFAULT, layout, H5P_DEFAULT), H5Dclose);
+    const tape::Hdf5Handle space(H5Screate_simple(static_cast<int>(size.size()), size.data(), unlimited.data()), H5Sclose);
+    const tape::Hdf5Handle layout(row_layout(row_shape), H5Pclose);
+    const tape::Hdf5Handle data(H5Dcreate2(id_, array.c_str(), type, space, H5P_DEFAULT, layout, H5P_DEFAULT), H5Dclose);
     require(data >= 0);
     size = row_shape;
   }
-  const Handle data(H5Dopen2(id_, array.c_str(), H5P_DEFAULT), H5Dclose);
+  const tape::Hdf5Handle data(H5Dopen2(id_, array.c_str(), H5P_DEFAULT), H5Dclose);
   size.insert(size.begin(), 0);
   {
-    const Handle space(H5Dget_space(data), H5Sclose);
+    const tape::Hdf5Handle space(H5Dget_space(data), H5Sclose);
     H5Sget_simple_extent_dims(space, size.data(), nullptr);
   }
   start[0] = size[0]++;
   require(H5Dset_extent(data, size.data()) >= 0);
   size[0] = 1;
-  const Handle space(H5Dget_space(data), H5Sclose), memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
+  const tape::Hdf5Handle space(H5Dget_space(data), H5Sclose),
+      memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
   H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr);
   require(H5Dwrite(data, type, memory, space, H5P_DEFAULT, row) >= 0);
 }
@@ -119,10 +99,10 @@ void Hdf5Writer::append(const std::string& array, const std::vector<int>& row, c
 }
 
 void Hdf5Writer::write_text(const std::string& attribute, const std::string& text) {
-  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate(H5S_SCALAR), H5Sclose);
+  const tape::Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate(H5S_SCALAR), H5Sclose);
   H5Tset_size(type, text.size() + 1);
   H5Tset_cset(type, H5T_CSET_UTF8);
-  const Handle written(H5Acreate2(id_, attribute.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const tape::Hdf5Handle written(H5Acreate2(id_, attribute.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
   require(written >= 0 && H5Awrite(written, type, text.c_str()) >= 0);
 }
 
@@ -142,7 +122,7 @@ void Hdf5Writer::commit() {
 }
 
 Hdf5Reader::Hdf5Reader(const std::filesystem::path& name) : name_(name.string()) {
-  be_quiet();
+  tape::silence_hdf5();
   if (!std::filesystem::exists(name)) throw tape::InputError(name_ + ": there is no such file");
   id_ = H5Fopen(name.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (id_ < 0) throw tape::InputError(name_ + ": not an HDF5 file, or damaged");
@@ -155,9 +135,9 @@ Hdf5Reader::~Hdf5Reader() {
 void Hdf5Reader::fail(const std::string& what) const { throw tape::InputError(name_ + ": " + what + " is missing or damaged"); }
 
 Shape Hdf5Reader::shape(const std::string& array) const {
-  const Handle data(H5Dopen2(id_, array.c_str(), H5P_DEFAULT), H5Dclose);
+  const tape::Hdf5Handle data(H5Dopen2(id_, array.c_str(), H5P_DEFAULT), H5Dclose);
   if (data < 0) fail(array);
-  const Handle space(H5Dget_space(data), H5Sclose);
+  const tape::Hdf5Handle space(H5Dget_space(data), H5Sclose);
   const int rank = H5Sget_simple_extent_ndims(space);
   if (rank < 1) fail(array);
   Shape shape(static_cast<std::size_t>(rank));
@@ -168,14 +148,14 @@ Shape Hdf5Reader::shape(const std::string& array) const {
 template <class T>
 std::vector<T> Hdf5Reader::read(const std::string& array, hid_t type, int row) const {
   Shape size = shape(array), start(size.size(), 0);
-  const Handle data(H5Dopen2(id_, array.c_str(), H5P_DEFAULT), H5Dclose), space(H5Dget_space(data), H5Sclose);
+  const tape::Hdf5Handle data(H5Dopen2(id_, array.c_str(), H5P_DEFAULT), H5Dclose), space(H5Dget_space(data), H5Sclose);
   if (row >= 0) {
     if (static_cast<hsize_t>(row) >= size[0]) fail(array + "[" + std::to_string(row) + "]");
     start[0] = static_cast<hsize_t>(row);
     size[0] = 1;
   }
   H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr);
-  const Handle memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
+  const tape::Hdf5Handle memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
   constexpr double kMost = 1e9;  // more stands in no file of ours; a damaged one may claim anything
   if (!(std::accumulate(size.begin(), size.end(), 1.0, std::multiplies<>()) <= kMost)) fail(array);
   std::vector<T> values(product(size));
@@ -190,9 +170,9 @@ std::vector<double> Hdf5Reader::read_row(const std::string& array, int index) co
 }
 
 std::string Hdf5Reader::read_text(const std::string& attribute) const {
-  const Handle read(H5Aopen(id_, attribute.c_str(), H5P_DEFAULT), H5Aclose);
+  const tape::Hdf5Handle read(H5Aopen(id_, attribute.c_str(), H5P_DEFAULT), H5Aclose);
   if (read < 0) fail(attribute);
-  const Handle type(H5Aget_type(read), H5Tclose);
+  const tape::Hdf5Handle type(H5Aget_type(read), H5Tclose);
   constexpr std::size_t kMost = 64'000'000;
   if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 || H5Tget_size(type) > kMost) fail(attribute);
   std::string text(H5Tget_size(type), '\0');

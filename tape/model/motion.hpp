@@ -9,7 +9,4 @@ Pose driven_pose(const Body& body, Real t);
 
 /// How far [m] the target of a grip has moved at time t [s].
 Vec3 grip_offset(const Grip& grip, Real t);
-
-/// Whether a grip holds at time t [s].
-inline bool grip_holds(const Grip& grip, Real t) { return t >= grip.start && t < grip.end; }
 }  // namespace tape

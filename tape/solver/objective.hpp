@@ -94,6 +94,8 @@ class Objective {
   const BlockMatrix& matrix() const { return matrix_; }
   /// "effect 'name', element i": the first whose energy is not finite; empty if all are.
   std::string first_non_finite(const StateView& s);
+  /// The same of the gradients and Hessians that linearize() found.
+  std::string first_non_finite_derivative();
   /// Calls f(name, term) for each effect that is on.
   template <class F>
   void for_each(const F& f) {

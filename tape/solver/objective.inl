@@ -34,6 +34,20 @@ struct FirstNonFinite {
   int count;
   TAPE_HD int operator()(int i) const { return std::isfinite(term.energy(s, i)) ? count : i; }
 };
+/// Of the derivatives, where the elements of an effect have written them.
+struct FirstNonFiniteSlot {
+  Span<const int> gradient, hessian;  // [count + 1]
+  Span<const Vec3> gradient_slots;
+  Span<const Mat3> hessian_slots;
+  int count;
+  TAPE_HD int operator()(int i) const {
+    for (int k = gradient[i]; k < gradient[i + 1]; ++k)
+      if (!gradient_slots[k].allFinite()) return i;
+    for (int k = hessian[i]; k < hessian[i + 1]; ++k)
+      if (!hessian_slots[k].allFinite()) return i;
+    return count;
+  }
+};
 struct Smaller {
   TAPE_HD int operator()(int a, int b) const { return a < b ? a : b; }
 };
@@ -207,6 +221,23 @@ inline std::string Objective::first_non_finite(const StateView& s) {
     const int n = term.view.elements.size;
     const int i = where.empty() ? reduce(n, n, objective::FirstNonFinite<T>{term.view, s, n}, objective::Smaller{}) : n;
     if (i < n) where = "effect '" + std::string(name) + "', element " + std::to_string(i);
+  });
+  return where;
+}
+
+inline std::string Objective::first_non_finite_derivative() {
+  std::string where;
+  for_each([&]<class T>(std::string_view name, Term<T>& term) {
+    if (term.count == 0 || !where.empty()) return;
+    const SlotGroupBuffers& group = is_contact<T> ? contact_ : fixed_;
+    const objective::FirstNonFiniteSlot kernel{
+        term.offsets.gradient.span(),
+        term.offsets.hessian.span(),
+        {group.gradient.span().data + term.gradient_base, group.gradient.size() - term.gradient_base},
+        {group.hessian.span().data + term.hessian_base, group.hessian.size() - term.hessian_base},
+        term.count};
+    if (const int i = reduce(term.count, term.count, kernel, objective::Smaller{}); i < term.count)
+      where = "derivatives of effect '" + std::string(name) + "', active element " + std::to_string(i);
   });
   return where;
 }

@@ -1,37 +1,14 @@
-#include <hdf5.h>
-
 #include <cstring>
 #include <filesystem>
 #include <limits>
 #include <memory>
 
 #include "tape/contact/intersection.hpp"
+#include "tape/core/hdf5_handle.hpp"
 #include "tape/step/world.hpp"
 
 namespace tape {
 namespace {
-/// Closes an HDF5 handle of any kind.
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-  ~Handle() {
-    if (id_ >= 0) close_(id_);
-  }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  operator hid_t() const { return id_; }
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
-
-/// HDF5 prints its own stack of errors otherwise; ours name the file.
-void silence_hdf5() {
-  H5dont_atexit();  // its clean-up crashes where a file could not be closed for want of space
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-}
-
 constexpr const char* kReals = "reals";
 constexpr const char* kIntegers = "integers";
 constexpr const char* kHash = "state_hash";
@@ -103,23 +80,23 @@ std::string world_hash(const World& world) {
 
 void write_array(hid_t file, const char* name, hid_t type, const void* data, std::size_t n) {
   const hsize_t size = n;
-  const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
-  const Handle set(H5Dcreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+  const Hdf5Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
+  const Hdf5Handle set(H5Dcreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
   if (set < 0 || H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) throw InputError(std::string("cannot write '") + name + "'");
 }
 
 template <class T>
 std::vector<T> read_array(hid_t file, const char* name, hid_t type) {
-  const Handle set(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
+  const Hdf5Handle set(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
   if (set < 0) throw InputError(std::string("'") + name + "' is missing");
-  const Handle space(H5Dget_space(set), H5Sclose);
+  const Hdf5Handle space(H5Dget_space(set), H5Sclose);
   std::vector<T> values(static_cast<std::size_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space))));
   if (H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) throw InputError(std::string("cannot read '") + name + "'");
   return values;
 }
 
 void write_file(const std::string& name, const World& world, const State& state, const Flat& flat, const std::string& settings) {
-  const Handle file(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+  const Hdf5Handle file(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
   if (file < 0) throw InputError("cannot create it");
   const std::string hash = state.hash(), world_id = world_hash(world);
   write_array(file, kReals, H5T_NATIVE_DOUBLE, flat.reals.data(), flat.reals.size());
@@ -131,7 +108,7 @@ void write_file(const std::string& name, const World& world, const State& state,
 }
 
 /// @throws InputError if there is no such file, or it is none of HDF5
-Handle open_snapshot(const std::string& file) {
+Hdf5Handle open_snapshot(const std::string& file) {
   silence_hdf5();
   if (!std::filesystem::exists(file)) throw InputError(file + ": no such file");
   const hid_t h5 = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
@@ -159,7 +136,7 @@ void save_snapshot(const std::string& file, const World& world, const State& sta
 }
 
 std::string snapshot_settings(const std::string& file) {
-  const Handle h5 = open_snapshot(file);
+  const Hdf5Handle h5 = open_snapshot(file);
   try {
     return as_text(read_array<char>(h5, kSettings, H5T_NATIVE_CHAR));
   } catch (const InputError& e) {
@@ -169,7 +146,7 @@ std::string snapshot_settings(const std::string& file) {
 
 State load_snapshot(const std::string& file, const World& world) {
   const auto refuse = [&](const std::string& why) { throw InputError(file + ": not a snapshot of this scene: " + why); };
-  const Handle h5 = open_snapshot(file);
+  const Hdf5Handle h5 = open_snapshot(file);
   State state = State::start(world);
   try {
     if (as_text(read_array<char>(h5, kWorld, H5T_NATIVE_CHAR)) != world_hash(world)) refuse("its strips and bodies differ");

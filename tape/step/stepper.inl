@@ -97,10 +97,7 @@ struct Fill {
 class SideStepper final : public Stepper {
  public:
   explicit SideStepper(const World& world)
-      : world_(world),
-        coordinates_(world.assembly),
-        search_(world.surface, world.setup.scene.dhat(), world.setup.scene.contact.guard * world.setup.scene.dhat()),
-        linear_(world.setup.linear, layout(world.assembly)) {
+      : world_(world), coordinates_(world.assembly), linear_(world.setup.linear, layout(world.assembly)) {
     const State state = State::start(world);
     std::vector<Real> mu;
     std::vector<Adhesion> adhesion;
@@ -117,7 +114,8 @@ class SideStepper final : public Stepper {
       along.push_back(world.assembly.rest[static_cast<std::size_t>(v)].x());
     along_.upload(along);
     for (Real m : world.assembly.mass) moving_mass_ += m;
-    contact_on_ = is_on("barrier");
+    const Real dhat = world.setup.scene.dhat();
+    if (is_on("barrier")) search_.emplace(world.surface, dhat, world.setup.scene.contact.guard * dhat);
     begin(state, world.setup.scene.time.dt);
     std::vector<bool> on;
     for (const PlanLine& line : world.plan) on.push_back(line.on);
@@ -152,7 +150,8 @@ class SideStepper final : public Stepper {
   }
 
   std::vector<Real> contact_force() const override {
-    return vertex_contact_force(world_, pairs_on_host(search_.candidates()), now_.x.download());
+    if (!search_) return std::vector<Real>(static_cast<std::size_t>(now_.x.size()), 0);
+    return vertex_contact_force(world_, pairs_on_host(search_->candidates()), now_.x.download());
   }
 
  private:
@@ -243,11 +242,11 @@ class SideStepper final : public Stepper {
 
   /// Makes the candidates hold along a direction from now_.
   void update_candidates(Span<const Vec3> direction) {
-    if (!contact_on_) return;
+    if (!search_) return;
     const Stopwatch watch(search_ms_);
     const Real margin = world_.setup.scene.contact.margin * world_.setup.scene.dhat();
-    if (search_.update(coordinates_.paths(now_, direction), margin)) ++searches_;
-    objective_->set_candidates(search_.candidates());
+    if (search_->update(coordinates_.paths(now_, direction), margin)) ++searches_;
+    objective_->set_candidates(search_->candidates());
   }
 
   /// Brings the memory to the end of a step at now_, and books what that does to the energy.
@@ -255,11 +254,11 @@ class SideStepper final : public Stepper {
     if (!normals_) return;
     report.adhesion = adhesion();
     StateView s = view(now_);
-    const Real adhesive = objective_->adhesive_energy(s), contact = objective_->contact_energy(s, replaced_, search_.surface());
+    const Real adhesive = objective_->adhesive_energy(s), contact = objective_->contact_energy(s, replaced_, search_->surface());
     state.memory = remember(dt);
     s.x_start = s.x;
-    objective_->recall(state.memory, s, search_.surface());
-    regained_ = contact - objective_->contact_energy(s, pairs_out_of_contact(state.memory), search_.surface());
+    objective_->recall(state.memory, s, search_->surface());
+    regained_ = contact - objective_->contact_energy(s, pairs_out_of_contact(state.memory), search_->surface());
     report.adhesion_work += objective_->adhesive_energy(s) - adhesive + regained_;
   }
   std::vector<AdhesionReport> adhesion() {
@@ -284,14 +283,15 @@ class SideStepper final : public Stepper {
     StateView s = view(now_);
     s.dt = dt;
     s.normal = normals_->at(s.x);
-    return objective_->remember(s, search_.samples(s.x));
+    return objective_->remember(s, search_->samples(s.x));
   }
   /// Candidates and elements of a step that starts at now_ with this memory.
   void recall(EffectMemory memory) {
+    if (!search_) return;
     replaced_ = pairs_out_of_contact(memory);
-    search_.set_bonded(replaced_);  // makes the search start anew: its past must not change the order of sums
+    search_->set_bonded(replaced_);  // makes the search start anew: its past must not change the order of sums
     update_candidates(direction_.span());
-    if (normals_) objective_->recall(memory, view(now_), search_.surface());
+    if (normals_) objective_->recall(memory, view(now_), search_->surface());
   }
 
   /// Newton's method from now_ == start_, the start of a step at `state`, to its end.
@@ -306,19 +306,25 @@ class SideStepper final : public Stepper {
       energy_ = objective_->energy(view(now_));
     }
     if (!std::isfinite(energy_.sum)) return fail(report, "not finite at the start: " + objective_->first_non_finite(view(now_)));
-    Real previous = 0;
+    Real previous = 0, last_update = 0, left = 0;
+    const auto converged_to = [&] {  // of the substeps that count, the worst
+      report.last_update = std::fmax(report.last_update, last_update);
+      report.stop_error_estimate = std::fmax(report.stop_error_estimate, left);
+      return true;
+    };
     overshot_ = false;
     for (int k = 0; k < params.max_newton; ++k) {
       ++report.newton;
       if (!find_direction(report)) return false;
       const Real slope = -reduce(direction_.size(), 0.0, stepping::Dot{right_.span(), direction_.span()}, stepping::Plus{});
       const Real moved = reduce(now_.x.size(), 0.0, stepping::Travel{coordinates_.paths(now_, direction_.span())}, stepping::Larger{});
-      if (!std::isfinite(moved) || !std::isfinite(slope)) return fail(report, "the Newton direction is not finite");
-      if (moved <= kPositionRoundOff * extent_) return true;  // no update is left that positions could hold
-      const bool contracts = moved < previous;                // else the ratio is no rate; as_foreseen() judges this update
+      if (!std::isfinite(moved) || !std::isfinite(slope))
+        return fail(report, "the Newton direction is not finite" + in_brackets(objective_->first_non_finite_derivative()));
+      if (moved <= kPositionRoundOff * extent_) return converged_to();  // no update is left that positions could hold
+      const bool contracts = moved < previous;                          // else the ratio is no rate; as_foreseen() judges this update
       const Real rho = contracts ? std::fmin(moved / previous, 0.99) : 0;
-      report.last_update = moved;
-      report.stop_error_estimate = contracts ? moved * rho / (1 - rho) : moved;
+      last_update = moved;
+      left = contracts ? moved * rho / (1 - rho) : moved;
       // An update that friction's secant shortened says nothing of what is left.
       const bool converged = !overshot_ && stops(moved, slope, rho);
       const Real last = std::exchange(previous, overshot_ ? 0 : moved);
@@ -328,7 +334,7 @@ class SideStepper final : public Stepper {
       if (!line_search(slope, report, at_round_off)) return false;
       overshot_ = report.halvings > halvings;
       const bool foreseen = -slope <= 1e3 * round_off || as_foreseen((before - energy_.sum) / -slope, moved, last);
-      if (at_round_off || (converged && foreseen && moved <= objective_->accuracy_to_judge(view(now_)))) return true;
+      if (at_round_off || (converged && foreseen && moved <= objective_->accuracy_to_judge(view(now_)))) return converged_to();
     }
     return fail(report, "Newton's method took " + std::to_string(params.max_newton) + " iterations (solver.max_newton)");
   }
@@ -369,10 +375,8 @@ class SideStepper final : public Stepper {
         report.linear_failures += solved.converged ? 0 : 1;
         return true;
       }
-      if (mode_ == HessianMode::projected) {
-        const std::string where = objective_->first_non_finite(view(now_));
-        return fail(report, where.empty() ? "the projected Hessian is not positive definite" : "not finite: " + where);
-      }
+      if (mode_ == HessianMode::projected)
+        return fail(report, "the projected Hessian is not positive definite" + in_brackets(objective_->first_non_finite_derivative()));
       mode_ = HessianMode::projected;
       ++report.hessian_fallbacks;
     }
@@ -380,15 +384,15 @@ class SideStepper final : public Stepper {
 
   /// Moves now_ along direction_: limited by CCD for each connected component, then halved until the energy falls.
   bool line_search(Real slope, StepReport& report, bool& at_round_off) {
-    if (contact_on_) {
+    if (search_) {
       const Real way = reduce(now_.x.size(), 0.0, stepping::Way{coordinates_.paths(now_, direction_.span())}, stepping::Larger{});
       if (const Real longest = world_.setup.scene.contact.max_move; way > longest)
         parallel_for(direction_.size(), stepping::Scale{direction_.span(), longest / way});
       update_candidates(direction_.span());
-      if (search_.candidates().size + search_.bonded().size > 0) {
+      if (search_->candidates().size + search_->bonded().size > 0) {
         const Stopwatch watch(ccd_ms_);
-        search_.limit_steps(coordinates_.paths(now_, direction_.span()), {.eta = world_.setup.scene.contact.ccd_gap});
-        search_.scale(direction_.span());
+        search_->limit_steps(coordinates_.paths(now_, direction_.span()), {.eta = world_.setup.scene.contact.ccd_gap});
+        search_->scale(direction_.span());
       }
     }
     const Stopwatch watch(line_search_ms_);
@@ -405,10 +409,10 @@ class SideStepper final : public Stepper {
       }
       ++report.halvings;
     }
-    const std::string where = objective_->first_non_finite(view(now_));
-    return fail(report, where.empty() ? "the line search found no lower energy" : "not finite: " + where);
+    return fail(report, "the line search found no lower energy" + in_brackets(objective_->first_non_finite(view(trial_))));
   }
 
+  static std::string in_brackets(const std::string& not_finite) { return not_finite.empty() ? "" : " (not finite: " + not_finite + ")"; }
   static bool fail(StepReport& report, const std::string& why) {
     report.failure = why;
     return false;
@@ -418,7 +422,7 @@ class SideStepper final : public Stepper {
     search_ms_ = assembly_ms_ = linear_ms_ = ccd_ms_ = line_search_ms_ = 0;
     searches_ = 0;
     regained_ = 0;
-    capped_before_ = search_.report().capped;
+    capped_before_ = search_ ? search_->report().capped : 0;
     objective_->for_each([](std::string_view, auto& term) { term.ms = 0; });
   }
 
@@ -426,27 +430,25 @@ class SideStepper final : public Stepper {
   void collect(StepReport& report) {
     const StateView s = view(now_);
     report.searches = searches_;
-    report.ccd_capped = static_cast<int>(search_.report().capped - capped_before_);
+    report.ccd_capped = search_ ? static_cast<int>(search_->report().capped - capped_before_) : 0;
     objective_->for_each([&]<class T>(std::string_view name, Term<T>& term) {
       EffectReport line{.name = std::string(name), .ms = term.ms, .energy = 0, .elements = term.count};
       const bool stored = !requires { T::incremental; };
       if (stored) line.energy = objective::energy_of(term.view, s).sum;
       if constexpr (requires { T::contact_pairs; }) {
-        const Span<const ContactPair> pairs = search_.candidates();
+        const Span<const ContactPair> pairs = search_->candidates();
         line.energy += regained_;
         report.candidates = pairs.size;
         report.active_pairs = term.count;
-        report.min_gap = std::fmin(smallest_gap(pairs, s.x).gap, smallest_gap(search_.bonded(), s.x).gap);
+        report.min_gap = std::fmin(smallest_gap(pairs, s.x).gap, smallest_gap(search_->bonded(), s.x).gap);
       }
       if constexpr (requires { term.view.strain(s, 0); })
         report.max_strain = reduce(term.view.elements.size, 0.0, stepping::Strain<T>{term.view, s}, stepping::Larger{});
       report.effects.push_back(line);
     });
-    report.stages = {{"broad_phase", search_ms_},
-                     {"ccd", ccd_ms_},
-                     {"assembly", assembly_ms_},
-                     {"linear_solver", linear_ms_},
-                     {"line_search", line_search_ms_}};
+    if (search_) report.stages = {{"broad_phase", search_ms_}, {"ccd", ccd_ms_}};
+    report.stages.insert(report.stages.end(),
+                         {{"assembly", assembly_ms_}, {"linear_solver", linear_ms_}, {"line_search", line_search_ms_}});
   }
 
   static std::vector<ContactPair> pairs_on_host(Span<const ContactPair> pairs) {
@@ -458,7 +460,7 @@ class SideStepper final : public Stepper {
 
   const World& world_;
   Coordinates coordinates_;
-  ContactSearch search_;
+  std::optional<ContactSearch> search_;   // where things can touch
   std::optional<VertexNormals> normals_;  // where something adheres
   std::vector<VertexTriangle> replaced_;  // pairs that are out of contact in this step
   Real regained_ = 0;                     // [J] energy of contact that the end of the step let back, beyond that of the candidates
@@ -473,7 +475,7 @@ class SideStepper final : public Stepper {
   HessianMode mode_ = HessianMode::exact;       // of the last direction
   EnergySum energy_;                            // at now_
   Real dt_ = 0, moving_mass_ = 0, extent_ = 0;  // extent_: largest coordinate [m]
-  bool contact_on_ = false, overshot_ = false;
+  bool overshot_ = false;
   Real search_ms_ = 0, assembly_ms_ = 0, linear_ms_ = 0, ccd_ms_ = 0, line_search_ms_ = 0;
   int searches_ = 0;
   long long capped_before_ = 0;

@@ -12,6 +12,18 @@ namespace tape {
 SurfaceMesh make_surface(const Scene& scene, const Assembly& a);  // surface_mesh.cpp
 
 namespace {
+/// Effects that find their pairs through contact are off with it, unless the scene forces them: that is refused.
+template <class T>
+void follow_contact(const std::vector<PlanLine>& plan, const Setup& setup, PlanLine& line) {
+  if (!(Remembers<T> || std::is_same_v<T, Friction>) || !line.on) return;
+  for (const PlanLine& other : plan) {
+    if (other.name != Barrier::name || other.on) continue;
+    if (setup.forced.contains(line.name)) throw InputError("effects." + line.name + " = on: it works on contact, and barrier is off");
+    line.on = false;
+    line.why = "it works on contact, and barrier is off";
+  }
+}
+
 std::vector<PlanLine> make_plan(const Setup& setup) {
   std::vector<PlanLine> plan;
   for_each_effect([&]<class T>(std::type_identity<T>) {
@@ -22,6 +34,7 @@ std::vector<PlanLine> make_plan(const Setup& setup) {
       line.on = forced->second;
       line.why = "effects." + line.name;
     }
+    follow_contact<T>(plan, setup, line);
     plan.push_back(line);
   });
   for (const auto& [name, on] : setup.forced) {

@@ -52,6 +52,24 @@ std::vector<HardCase> obstacle_cases() {
        [=] {
          return onto(wedge, foot, turned(dropped_strip(0.05, 3, z), Vec3(0, 0, kQuarter) + Vec3(0.2, 1.4, 0), Vec3(0, -0.02, 0.03)));
        }},
+      {"HC1_corner_on_wedge", "a strip's corner falls on a sharp ridge", 0.25, false,
+       [=] { return onto(wedge, foot, turned(dropped_strip(0.03, 3, z), Vec3(0.6, -0.9, 0), Vec3(0.0005, 0, 0.012))); }},
+      {"HC1_edge_on_cliff_edge", "a strip's long edge falls across the edge of a block", 0.3, false,
+       [=] {
+         return onto(box_mesh(Vec3(0.04, 0.05, 0.02)), Vec3(-0.024, 0, -0.01),
+                     turned(dropped_strip(0.05, 3, z), Vec3(kQuarter, 0, 0), Vec3(-0.0243, 0, 0.0125)));
+       }},
+      {"HC1_corner_on_cliff_edge", "a strip's corner falls on the edge of a block", 0.3, false,
+       [=] {
+         return onto(box_mesh(Vec3(0.04, 0.05, 0.02)), Vec3(-0.024, 0, -0.01),
+                     turned(dropped_strip(0.03, 3, z), Vec3(0.6, -0.9, 0), Vec3(-0.0045, 0, 0.012)));
+       }},
+      {"HC1_dragged_over_spike", "a strip dragged across a point", 0.3, true,
+       [=] { return dragged(onto(spike, foot, dropped_strip(0.06, 3, 0.0005)), 0.03, 0.15); }},
+      {"HC1_dragged_over_cliff_edge", "a strip dragged back over the edge of a block", 0.3, true,
+       [=] { return dragged(onto(box_mesh(Vec3(0.04, 0.05, 0.02)), Vec3(-0.024, 0, -0.01), dropped_strip(0.06, 3, 0.0005)), 0.03, 0.15); }},
+      {"HC1_dragged_over_hole", "a strip dragged over the bore of a ring", 0.3, true,
+       [=] { return dragged(onto(ring_mesh(0.012, 0.018, 0.02, 24, 1), Vec3(0, 0, -0.01), dropped_strip(0.06, 3, 0.0006)), 0.03, 0.15); }},
       {"HC1_cliff_edge", "a strip half over the edge of a block", 0.3, false,
        [=] { return onto(box_mesh(Vec3(0.04, 0.05, 0.02)), Vec3(-0.024, 0, -0.01), dropped_strip(0.06, 3, 0.0005)); }},
       {"HC1_internal_edges", "a strip dragged over a plane of many small triangles", 0.3, true,

@@ -18,6 +18,12 @@ const StepReport& Simulation::step() {
   min_gap = std::min(min_gap, report_.min_gap);
   if (!report_.ok) note(report_.failure);
   if (report_.linear_failures > 0) note("a linear solve ended at its iteration limit");
+  if (report_.ccd_capped > 0 && !may_reach_limits)
+    note("the CCD of " + std::to_string(report_.ccd_capped) + " pairs ended at its iteration limit");
+  if (report_.substeps > 1 && !may_reach_limits)
+    note("Newton's method reached a limit; taken in " + std::to_string(report_.substeps) + " parts");
+  ccd_capped += report_.ccd_capped;
+  retried += report_.substeps > 1 ? 1 : 0;
   if (!(report_.min_gap > 0)) note("gap " + to_text(report_.min_gap) + " m");
   const std::vector<Vec3> now = x();
   for (const Vec3& p : now)

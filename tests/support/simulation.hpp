@@ -8,7 +8,7 @@
 
 namespace tape::test {
 /// A scene in memory that steps and keeps an eye on what every step must keep (checks.md, part 9): finite, no intersection,
-/// gaps above zero, no limit reached in silence.
+/// gaps above zero, no limit reached.
 class Simulation {
  public:
   explicit Simulation(Setup setup, Backend backend = Backend::cpu);
@@ -20,6 +20,7 @@ class Simulation {
   const State& state() const { return state_; }
   State& state() { return state_; }
   const StepReport& report() const { return report_; }
+  std::vector<Real> contact_force() const { return stepper_->contact_force(); }
   std::vector<Vec3> x() const { return vertex_positions(*world_, state_); }
   /// Mechanical energy [J]: kinetic and all potentials.
   Real energy() const;
@@ -27,9 +28,11 @@ class Simulation {
   Real energy_scale() const;
 
   bool check_intersections = true;
+  bool may_reach_limits = false;    ///< steps in parts and capped CCD are counted only
   std::vector<std::string> broken;  ///< in words, with the step; empty: all is well
   Real min_gap = 1e300;             ///< [m] over all steps
   int newton_max = 0, newton_sum = 0;
+  int retried = 0, ccd_capped = 0;  ///< steps taken in parts; pairs whose CCD ran out of iterations
 
  private:
   std::unique_ptr<World> world_;

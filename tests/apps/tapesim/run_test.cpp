@@ -218,8 +218,19 @@ TEST_F(BadInput, AFullDiskLeavesNothingHalfWritten) {
     EXPECT_EQ(outcome.exit_code, 2) << bytes << " bytes: " << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr((folder / "a").string())) << bytes;
     EXPECT_THAT(folder.names("a"), Not(Contains("report.json"))) << bytes;
-    for (const std::string& name : folder.names("a")) EXPECT_NE(name[0], '.') << name;
+    for (const std::string& name : folder.names("a"))
+      EXPECT_THAT(name, testing::AnyOf("snapshot.h5", "state.h5", "steps.csv")) << "half written";
   }
+}
+TEST_F(Run, AStepThatCannotBeSolvedEndsTheRunAtTheLastGoodState) {
+  const Outcome outcome = run("a", {"--set", "solver.max_newton=1", "--set", "solver.retries=0"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_EQ(report("a")["status"], "failed");
+  EXPECT_EQ(report("a")["newton"]["failed_steps"], 1);
+  EXPECT_THAT(read(folder / "a" / "report.json"), HasSubstr("solver.max_newton"));
+  ASSERT_EQ(run("b", {"--resume", (folder / "a" / "snapshot.h5").string()}).exit_code, 0);
+  ASSERT_EQ(run("whole").exit_code, 0);
+  EXPECT_EQ(report("b")["state_hash"], report("whole")["state_hash"]);
 }
 TEST_F(BadInput, AFolderThatCannotBeMadeIsNamed) {
   const Outcome outcome = tapesim({"run", scene, "--out", "/dev/full/run"});

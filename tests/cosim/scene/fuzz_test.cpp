@@ -21,7 +21,7 @@
 using namespace cosim;
 
 /// Broken scenes, meshes and recordings must be refused with an InputError, or accepted; nothing else may happen.
-/// LongFuzz, with four tests of 20 s each, is the same for longer.
+/// LongFuzz, with four tests of 30 s each, is the same for longer.
 namespace {
 namespace fs = std::filesystem;
 
@@ -77,7 +77,7 @@ struct Length {
   int mutations = 0;
   double seconds = 0;
 };
-constexpr Length kLong{.seconds = 20};
+constexpr Length kLong{.seconds = 30};
 
 /// Runs `feed` on mutations of `seeds`.
 void fuzz(const std::vector<std::string>& seeds, Length length,

@@ -126,6 +126,8 @@ TEST(Distance, NearlyParallelEdgesHaveTheExactDistanceAndItsSlope) {  // checks.
       expect_well_formed(c, 2);
       const Vec3 p = combine(c.weight, x);
       EXPECT_NEAR(p.norm(), height, 1e-12) << degrees;
+      // The gradient is the direction of the offset times the weights, at any angle.
+      EXPECT_LT(p.normalized().cross(rotate(turn, Vec3(0, 1, 0))).norm(), 1e-5) << degrees;
       // Rounding of the coordinates alone moves the crossing by this much; and a difference step h by h height / angle^2.
       const Real moved = 1e-15 * height / (angle * angle) + 1e-15 / angle;
       const Real crossing[] = {1.9 / 2.6, 0.7 / 2.6, -1.7 / 2.1, -0.4 / 2.1};

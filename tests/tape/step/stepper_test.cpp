@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "tape/core/execution.hpp"
@@ -20,12 +21,24 @@ Setup busy_setup() {
   test::add_body(setup, "box", box_mesh(Vec3(0.01, 0.01, 0.01)), Motion::dynamic, Vec3(0.002, 0, 0.03));
   return setup;
 }
-std::string hash_after(int steps, int threads) {
-  set_threads(threads);
-  Simulation simulation(busy_setup());
-  for (int k = 0; k < steps; ++k) simulation.step();
+/// The same things, large enough that every loop of a step is cut into many chunks: a fine strip that slides on a table, a box on it.
+Setup wide_setup() {
+  Strip strip = test::flat_strip(0.3, 12, Vec3(-0.15, 0, 2e-4));
+  strip.velocity = Vec3(0.1, 0.02, 0);
+  auto setup = test::strip_setup(strip);
+  test::add_body(setup, "table", box_mesh(Vec3(0.4, 0.06, 0.01)), Motion::fixed, Vec3(0, 0, -0.005));
+  test::add_body(setup, "box", box_mesh(Vec3(0.01, 0.01, 0.01)), Motion::dynamic, Vec3(0.002, 0, 0.0054));
+  return setup;
+}
+std::string wide_hash(int threads, std::uint64_t shuffle) {
+  const std::uint64_t usual = shuffled_order();
+  set_threads(threads), set_shuffled_order(shuffle);
+  Simulation simulation(wide_setup());
+  for (int k = 0; k < 3; ++k) simulation.step();
+  set_threads(0), set_shuffled_order(usual);
   EXPECT_TRUE(simulation.broken.empty()) << simulation.broken.front();
-  set_threads(0);
+  EXPECT_GT(simulation.state().x.size(), 2000u);
+  EXPECT_GT(simulation.report().active_pairs, 1000);
   return simulation.state().hash();
 }
 }  // namespace
@@ -43,10 +56,12 @@ TEST(Stepper, FreeFallIsTheSumOfImplicitEuler) {
 }
 
 TEST(Stepper, SameBitsForAnyNumberOfThreads) {
-  const std::string one = hash_after(15, 1);
-  EXPECT_EQ(one, hash_after(15, 2));
-  EXPECT_EQ(one, hash_after(15, 8));
+  const std::string one = wide_hash(1, 0);
+  EXPECT_EQ(one, wide_hash(2, 0));
+  EXPECT_EQ(one, wide_hash(8, 0));
 }
+
+TEST(Stepper, SameBitsForAnyOrderOfIterations) { EXPECT_EQ(wide_hash(2, 0), wide_hash(1, 7)); }
 
 TEST(Stepper, SaveAndResumeGivesTheSameBits) {
   const std::string file = (std::filesystem::temp_directory_path() / "tape_resume_test.h5").string();
@@ -99,6 +114,44 @@ TEST(Stepper, TheTwoLevelSolverKnowsWhereTheStripIsAndNeedsAnEighthOfTheIteratio
     return sum;
   };
   EXPECT_LE(8 * iterations(LinearKind::pcg_two_level), iterations(LinearKind::pcg_jacobi));
+}
+
+TEST(Stepper, AGripPullsInTheStepsBetweenItsStartAndItsEnd) {
+  auto setup = test::strip_setup(test::flat_strip(0.05, 3, Vec3::Zero()));
+  Grip grip = test::hold("hand", {0, 1, 2, 3});
+  grip.start = 0.02, grip.end = 0.04;  // steps of 0.01 s
+  setup.scene.grips = {grip};
+  Simulation simulation(setup);
+  for (const bool pulls : {false, false, true, true, false}) {
+    const Vec3 force = simulation.step().grip_force[0];
+    EXPECT_EQ(force.norm() > 0, pulls) << "step " << simulation.state().step;
+  }
+}
+
+TEST(Stepper, WhatWorksOnContactIsOffWithIt) {
+  auto setup = busy_setup();
+  setup.forced["barrier"] = false;
+  const Simulation simulation(setup);
+  for (const PlanLine& line : simulation.world().plan)
+    if (line.name == "friction") {
+      EXPECT_FALSE(line.on);
+      EXPECT_EQ(line.why, "it works on contact, and barrier is off");
+    }
+  setup.forced["friction"] = true;
+  EXPECT_THROW(Simulation{setup}, InputError);
+}
+
+TEST(Stepper, ContactThatIsOffHasNoStages) {
+  for (const bool on : {true, false}) {
+    auto setup = busy_setup();
+    setup.forced["barrier"] = on;
+    Simulation simulation(setup);
+    std::vector<std::string> stages;
+    for (const StageReport& stage : simulation.step().stages) stages.push_back(stage.name);
+    EXPECT_EQ(std::ranges::count(stages, "broad_phase"), on ? 1 : 0);
+    EXPECT_EQ(std::ranges::count(stages, "ccd"), on ? 1 : 0);
+    EXPECT_EQ(std::ranges::count(stages, "linear_solver"), 1);
+  }
 }
 
 TEST(Stepper, AForcedOffEffectIsNotBuilt) {
