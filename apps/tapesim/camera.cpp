@@ -40,7 +40,7 @@ CameraParams read_camera(const cosim::Reader& camera) {
 CameraParams load_camera(const std::filesystem::path& file) {
   const cosim::SceneFile yaml_file = cosim::SceneFile::load(file);
   const cosim::Reader section = yaml_file["camera"];
-  const CameraParams camera = read_camera(section ? section : yaml_file.root());
+  CameraParams camera = read_camera(section ? section : yaml_file.root());
   yaml_file.require_all_used();
   return camera;
 }

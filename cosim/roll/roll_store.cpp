@@ -52,9 +52,9 @@ std::filesystem::path roll_store() {
     const char* value = std::getenv(name);
     return std::filesystem::path(value ? value : "");
   };
-  if (const auto folder = variable("TAPE_CACHE"); !folder.empty()) return folder;
-  if (const auto folder = variable("XDG_CACHE_HOME"); !folder.empty()) return folder / "tape";
-  if (const auto folder = variable("HOME"); !folder.empty()) return folder / ".cache" / "tape";
+  if (auto folder = variable("TAPE_CACHE"); !folder.empty()) return folder;
+  if (auto folder = variable("XDG_CACHE_HOME"); !folder.empty()) return folder / "tape";
+  if (auto folder = variable("HOME"); !folder.empty()) return folder / ".cache" / "tape";
   return std::filesystem::temp_directory_path() / "tape";
 }
 

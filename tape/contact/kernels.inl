@@ -50,9 +50,9 @@ struct SurfaceView {
     const int k = sample % (n * n);
     int r = 0;
     while ((r + 1) * (r + 1) <= k) ++r;
-    const int place = k - r * r;
+    const int place = k - r * r, column = place / 2;
     const bool turned = place % 2 == 1;
-    p.w[2] = (place / 2 + (turned ? 2.0 : 1.0) / 3) / n;
+    p.w[2] = (column + (turned ? 2.0 : 1.0) / 3) / n;
     p.w[0] = 1 - (r + (turned ? 1.0 : 2.0) / 3) / n;
     p.w[1] = 1 - p.w[0] - p.w[2];
     return p;

@@ -286,7 +286,7 @@ class SideStepper final : public Stepper {
     return objective_->remember(s, search_->samples(s.x));
   }
   /// Candidates and elements of a step that starts at now_ with this memory.
-  void recall(EffectMemory memory) {
+  void recall(const EffectMemory& memory) {
     if (!search_) return;
     replaced_ = pairs_out_of_contact(memory);
     search_->set_bonded(replaced_);  // makes the search start anew: its past must not change the order of sums

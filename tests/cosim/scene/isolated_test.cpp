@@ -10,7 +10,7 @@ using namespace cosim;
 
 TEST(Isolated, WhatTheWorkReturnsArrives) {
   EXPECT_EQ(run_isolated([] { return std::string(); }, 10, 100), "");
-  const std::string large(3'000'000, 'x');  // more than a pipe holds
+  std::string large(3'000'000, 'x');  // more than a pipe holds
   EXPECT_EQ(run_isolated([&] { return large; }, 10, 100), large);
 }
 
