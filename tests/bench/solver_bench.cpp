@@ -141,12 +141,14 @@ BENCHMARK(cost_model) TAPE_ROWS;
 
 #define TAPE_SHORT ->Arg(100)->Arg(1000)->Unit(benchmark::kMillisecond)
 #define TAPE_TURNS ->Arg(2)->Arg(8)->Arg(32)->Unit(benchmark::kMillisecond)
+// The sizes are calls on what stands before them: no parentheses. NOLINTBEGIN(bugprone-macro-parentheses)
 #define TAPE_SOLVERS(shape, sizes, jacobi_sizes)                                              \
   BENCHMARK_CAPTURE(solve, shape##_auto, LinearKind::automatic, Shape::shape) sizes;          \
   BENCHMARK_CAPTURE(solve, shape##_cholesky, LinearKind::cholesky, Shape::shape) sizes;       \
   BENCHMARK_CAPTURE(solve, shape##_strip, LinearKind::pcg_strip, Shape::shape) sizes;         \
   BENCHMARK_CAPTURE(solve, shape##_two_level, LinearKind::pcg_two_level, Shape::shape) sizes; \
   BENCHMARK_CAPTURE(solve, shape##_jacobi, LinearKind::pcg_jacobi, Shape::shape) jacobi_sizes
+// NOLINTEND(bugprone-macro-parentheses)
 TAPE_SOLVERS(strip, TAPE_ROWS, TAPE_ROWS);
 TAPE_SOLVERS(fold, TAPE_ROWS, TAPE_ROWS);
 TAPE_SOLVERS(light_strip, TAPE_ROWS, TAPE_SHORT);

@@ -86,7 +86,7 @@ class Section {
   static Real to_line(const Vec2& p, const std::vector<Vec2>& line, int first, int last) {
     Real d = kInfinity;
     for (int i = first; i < last; ++i) {
-      const Vec2 a = line[i], e = line[i + 1] - a;
+      const Vec2 &a = line[i], e = line[i + 1] - a;
       const Real t = std::clamp((p - a).dot(e) / e.squaredNorm(), 0.0, 1.0);
       d = std::min(d, (p - a - t * e).norm());
     }
