@@ -8,13 +8,11 @@
 namespace tape::TAPE_SIDE {
 /// Positions of all vertices and poses of all bodies on this side: a point in the space of the unknowns.
 struct Configuration {
-  Buffer<Vec3> x;              ///< [nv] m
-  Buffer<Pose> body;           ///< [bodies] X_WB
-  Buffer<Vec3> body_position;  ///< [bodies] m, what PathView needs of them
+  Buffer<Vec3> x;     ///< [nv] m
+  Buffer<Pose> body;  ///< [bodies] X_WB
   void copy_from(const Configuration& other) {
     x.copy_from(other.x);
     body.copy_from(other.body);
-    body_position.copy_from(other.body_position);
   }
 };
 
@@ -25,12 +23,10 @@ struct MoveBody {
   Span<const int> block;
   Real step;
   Span<Pose> to;
-  Span<Vec3> to_position;
   TAPE_HD void operator()(int b) const {
     if (block[b] < 0) return;
     const Mat3 turn = rotation_exp(step * direction[block[b] + 1]);
     to[b] = {turn * from[b].rotation, from[b].position + step * direction[block[b]]};
-    to_position[b] = to[b].position;
   }
 };
 struct MoveVertex {
@@ -68,8 +64,7 @@ class Coordinates {
   Span<const VertexOwner> owner() const { return owner_.span(); }
   /// to = from moved by `step` times the direction [blocks] m and rad. Fixed things keep what `to` has.
   void move(const Configuration& from, Span<const Vec3> direction, Real step, Configuration& to) const {
-    parallel_for(from.body.size(),
-                 coordinates::MoveBody{from.body.span(), direction, body_block_.span(), step, to.body.span(), to.body_position.span()});
+    parallel_for(from.body.size(), coordinates::MoveBody{from.body.span(), direction, body_block_.span(), step, to.body.span()});
     parallel_for(from.x.size(),
                  coordinates::MoveVertex{from.x.span(), direction, owner_.span(), local_.span(), to.body.span(), step, to.x.span()});
   }
@@ -78,7 +73,7 @@ class Coordinates {
     parallel_for(at.x.size(), coordinates::BlockPoints{at.x.span(), owner_.span(), points});
   }
   PathView paths(const Configuration& from, Span<const Vec3> direction) const {
-    return {from.x.span(), owner_.span(), direction, from.body_position.span()};
+    return {from.x.span(), owner_.span(), direction, from.body.span()};
   }
 
  private:

@@ -23,15 +23,17 @@ struct VertexPath {
 
 /// Paths of all vertices along a direction of the unknowns.
 struct PathView {
-  Span<const Vec3> x;              ///< [nv] m, where the paths start
-  Span<const VertexOwner> owner;   ///< [nv]
-  Span<const Vec3> direction;      ///< [nb] m and rad
-  Span<const Vec3> body_position;  ///< [bodies] m, centre of mass
+  Span<const Vec3> x;             ///< [nv] m, where the paths start
+  Span<const VertexOwner> owner;  ///< [nv]
+  Span<const Vec3> direction;     ///< [nb] m and rad
+  Span<const Pose> body;          ///< [bodies] X_WB where the paths start
   TAPE_HD VertexPath operator[](int v) const {
     const VertexOwner o = owner[v];
     if (o.block < 0) return {x[v], Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
     if (o.body < 0) return {x[v], direction[o.block], Vec3::Zero(), Vec3::Zero()};
-    return {body_position[o.body], direction[o.block], x[v] - body_position[o.body], direction[o.block + 1]};
+    return {body[o.body].position, direction[o.block], x[v] - body[o.body].position, direction[o.block + 1]};
   }
+  /// Of the body that carries vertex v, else of a frame that does not turn, at the vertex itself.
+  TAPE_HD Pose frame(int v) const { return owner[v].body < 0 ? Pose{Mat3::Identity(), x[v]} : body[owner[v].body]; }
 };
 }  // namespace tape

@@ -29,6 +29,26 @@ TAPE_HD inline Box path_box(const VertexPath& path) {
   return inflated(chord, chord_deviation(path.spin.cross(path.arm).norm() / angle, angle));
 }
 
+/// A frame over a trial step. In its coordinates, which are those of the world wherever it last found itself at `origin`, a point x is at
+///   y(t) = origin + turn exp(-t spin) (x - centre - t velocity).
+struct FramePath {
+  Vec3 centre, velocity, spin;  ///< [m], [m] and [rad] per whole step
+  Mat3 turn;                    ///< what its rotation was at `origin`, times the inverse of what it is now
+  Vec3 origin;                  ///< [m]
+};
+/// Holds the whole path seen from the frame: the box of its ends, inflated by an eighth of a bound of |y''|, which a chord cannot miss by
+/// more. With r = centre + t velocity of the path seen from the frame's, a its arm and e = spin of the path - spin of the frame =: w,
+///   exp(t w) y'' = turn (w x (w x r - 2 r') + (e x w) x a + e x (e x a)),
+/// whose first term is affine in t.
+TAPE_HD inline Box path_box(const FramePath& frame, const VertexPath& path) {
+  const Vec3 r = path.centre - frame.centre, drift = path.velocity - frame.velocity, w = frame.spin, e = path.spin - w;
+  const Vec3 y0 = frame.origin + frame.turn * (r + path.arm);
+  const Vec3 y1 = frame.origin + frame.turn * rotate(-w, path.at(1) - frame.centre - frame.velocity);
+  const Real swing = std::fmax(w.cross(w.cross(r) - 2 * drift).norm(), w.cross(w.cross(r + drift) - 2 * drift).norm());
+  const Real bend = swing + (e.cross(w).norm() + e.squaredNorm()) * path.arm.norm();
+  return inflated({y0.cwiseMin(y1), y0.cwiseMax(y1)}, bend / 8);
+}
+
 /// A box as the tree stores it: eight numbers that are merged by their minimum and compared as a whole.
 /// Lanes 0-2 low, 3-5 -high [m, rounded outwards], 6 -(largest id), 7 whether no part of it can move.
 struct alignas(32) Lanes {

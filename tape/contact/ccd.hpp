@@ -5,7 +5,6 @@
 
 #include "tape/bodies/path.hpp"
 #include "tape/contact/pair.hpp"
-#include "tape/core/settings.hpp"
 
 namespace tape {
 /// How far a pair may go along its trial step.
@@ -16,11 +15,6 @@ struct PairStep {
 struct CcdSettings {
   Real eta = 0.2;        ///< [1] share of the gap at the start that is kept, in (0, 1)
   int iterations = 512;  ///< cap on the number of advances
-  template <class F>
-  void fields(F&& f) {
-    f("eta", eta, "", Range{.low = 0, .high = 1, .open_low = true, .open_high = true}, "share of a gap that one step must leave");
-    f("iterations", iterations, "", Range::closed(1, 1e9), "cap on the advances of one pair");
-  }
 };
 
 namespace detail {

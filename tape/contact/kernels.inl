@@ -4,17 +4,20 @@
 #include "tape/contact/ccd.hpp"
 #include "tape/contact/surface.hpp"
 #include "tape/contact/tree.hpp"
+#include "tape/core/functors.hpp"
 
 /// Kernels of the contact search.
 namespace tape::TAPE_SIDE::detail {
 inline constexpr int kFree = -1, kFixed = -2;  // a carrier that is not a body
+inline constexpr int kWorld = 0;               // a frame
 
 struct SurfaceView {
   Span<const SurfaceVertex> vertices;
   Span<const SurfaceEdge> edges;
   Span<const SurfaceTriangle> triangles;
   Span<const int> vertex_carrier, edge_carrier, triangle_carrier;  ///< body that carries the whole primitive, kFixed or kFree
-  Span<const int> leader;  ///< [objects] free vertex from which pairs inside the object are seen, -1 if it has none
+  Span<const int> vertex_frame;                                    ///< [nv] frame from which pairs of things that follow it are seen
+  Span<const int> lead;  ///< [frames] vertex that the frame goes with, and turns with if a body carries it; none for the world
   int materials;
   Real dhat;   ///< [m] reach of vertex-triangle pairs beyond xi
   Real guard;  ///< [m] reach of the barrier of edge-edge pairs and between a rim and an open surface
@@ -59,141 +62,184 @@ struct SurfaceView {
   }
 };
 
-/// Trust box of a vertex in the world, and the one seen from the leader of its object (the same without a leader).
+/// Box that a vertex stays in, and its ball: never farther than `radius` from `centre`.
 struct Trust {
-  Box world, inner;
+  Box box;
+  Vec3 centre;  ///< [m]
+  Real radius;  ///< [m]
 };
-/// Ball around a trust box: the vertex stays within `radius` of `centre`; seen from the leader within `inner_radius` of a point that
-/// is as far from `centre` for all vertices of the object.
-struct Ball {
-  Vec3 centre;                ///< [m]
-  Real radius, inner_radius;  ///< [m]
-};
-/// Path of a vertex that stands for itself, seen from another that has moved by `shift` [m] since the rebuild.
-TAPE_HD inline VertexPath seen_from(const VertexPath& leader, const Vec3& shift, VertexPath path) {
-  path.centre -= shift;
-  path.velocity -= leader.velocity;
-  return path;
-}
-struct MakeTrust {
+struct MakeFrames {
   SurfaceView s;
   PathView paths;
-  Real margin;
-  Span<Trust> trust;
-  Span<Ball> ball;
-  TAPE_HD void operator()(int v) const {
-    const Box path = path_box(paths[v]);
-    const int leader = s.leader[s.vertices[v].object];
-    Trust& t = trust[v];
-    t.world = paths.owner[v].block < 0 ? path : inflated(path, margin);
-    t.inner = leader < 0 ? t.world : inflated(path_box(seen_from(paths[leader], Vec3::Zero(), paths[v])), margin);
-    ball[v] = {t.world.centre(), t.world.radius(), t.inner.radius()};
+  Span<const Pose> origin;  ///< [frames] where each was at the rebuild
+  Span<FramePath> frames;
+  TAPE_HD void operator()(int k) const {
+    if (k == kWorld) return;
+    const VertexPath lead = paths[s.lead[k]];
+    const Pose now = paths.frame(s.lead[k]);
+    frames[k] = {now.position, lead.velocity, lead.spin, origin[k].rotation * now.rotation.transpose(), origin[k].position};
   }
 };
-struct StoreLeaders {
+struct StoreFrames {
   SurfaceView s;
   PathView paths;
-  Span<Vec3> start;
-  TAPE_HD void operator()(int object) const {
-    if (s.leader[object] >= 0) start[object] = paths.x[s.leader[object]];
+  Span<Pose> origin;
+  TAPE_HD void operator()(int k) const {
+    if (k != kWorld) origin[k] = paths.frame(s.lead[k]);
+  }
+};
+/// How vertices are looked at: each from its own frame, or all from the world.
+struct Viewpoint {
+  SurfaceView s;
+  PathView paths;
+  Span<const FramePath> frames;  ///< empty: the world
+  TAPE_HD int frame(int v) const { return frames.size > 0 ? s.vertex_frame[v] : kWorld; }
+  TAPE_HD Box box(int v) const {
+    const int k = frame(v);
+    return k == kWorld ? path_box(paths[v]) : path_box(frames[k], paths[v]);
+  }
+  /// Whether the vertex cannot move, so that its box stays what it is.
+  TAPE_HD bool still(int v) const {
+    const int k = frame(v), carrier = s.vertex_carrier[v];
+    return carrier == kFixed || (k != kWorld && carrier >= 0 && carrier == s.vertex_carrier[s.lead[k]]);
+  }
+};
+struct MakeTrust {
+  Viewpoint view;
+  Real margin;
+  Span<Trust> trust;
+  TAPE_HD void operator()(int v) const {
+    const Box path = view.box(v), box = view.still(v) ? path : inflated(path, margin);
+    trust[v] = {box, box.centre(), box.radius()};
   }
 };
 struct InTrust {
-  SurfaceView s;
-  PathView paths;
-  Span<const Trust> trust;
-  Span<const Vec3> leader_start;  ///< [objects] m, at the rebuild
+  Viewpoint own, world;
+  Span<const Trust> own_trust, world_trust;
   TAPE_HD bool operator()(int v) const {
-    if (!trust[v].world.contains(path_box(paths[v]))) return false;
-    const int object = s.vertices[v].object, leader = s.leader[object];
-    if (leader < 0) return true;
-    return trust[v].inner.contains(path_box(seen_from(paths[leader], paths.x[leader] - leader_start[object], paths[v])));
+    if (!world.still(v) && !world_trust[v].box.contains(world.box(v))) return false;
+    return own.frame(v) == kWorld || own.still(v) || own_trust[v].box.contains(own.box(v));
   }
 };
-struct And {
-  TAPE_HD bool operator()(bool a, bool b) const { return a && b; }
-};
-struct Plus {
-  TAPE_HD int operator()(int a, int b) const { return a + b; }
-};
-
 /// Primitives as a query looks at them: at the centres of the balls, with all that the decision needs in one place.
 struct EdgeShape {
   Vec3 middle, half;  ///< [m] end points are middle -+ half
   Real reach;         ///< [m] two edges that are farther apart than their reaches together never come within the guard's reach
-  Real inner_reach;   ///< [m] the same for two edges of one object
-  int v[2], carrier, object;
+  int v[2], carrier, frame;
 };
 struct TriangleShape {
-  Vec3 x[3];                ///< [m]
-  Vec3 normal;              ///< unit, or zero without area
-  Real reach, inner_reach;  ///< [m]
-  int v[3], carrier, object;
+  Vec3 x[3];    ///< [m]
+  Vec3 normal;  ///< unit, or zero without area
+  Real reach;   ///< [m]
+  int v[3], carrier, frame;
 };
 /// Covers the rounding of the tests below, which is some 1e-16 of the coordinates.
 inline constexpr Real kRounding = 1e-9;
 
+/// The surface as one viewpoint shows it.
+struct Sight {
+  Span<const Trust> trust;              ///< [nv]
+  Span<const EdgeShape> edges;          ///< [edges]
+  Span<const TriangleShape> triangles;  ///< [triangles]
+  // Boxes of all places where a primitive can be within half of its reach.
+  TAPE_HD Box box(const SurfaceView& s, const SurfaceEdge& e) const {
+    return inflated(joined(trust[e.v[0]].box, trust[e.v[1]].box), s.xi(e) + s.guard / 2);
+  }
+  TAPE_HD Box box(const SurfaceView& s, const SurfaceTriangle& t) const {
+    return inflated(joined(trust[t.v[0]].box, joined(trust[t.v[1]].box, trust[t.v[2]].box)), s.xi(t) + s.dhat / 2);
+  }
+  TAPE_HD Box box(const SurfaceView& s, int vertex) const { return inflated(trust[vertex].box, s.vertices[vertex].xi + s.dhat / 2); }
+};
 struct MakeEdges {
   SurfaceView s;
   Span<const Trust> trust;
-  Span<const Ball> ball;
-  Span<Lanes> boxes;
+  Span<const int> list;
   Span<EdgeShape> shapes;
-  TAPE_HD void operator()(int i) const {
+  TAPE_HD void operator()(int k) const {
+    const int i = list[k];
     const SurfaceEdge& e = s.edges[i];
-    const Ball &b0 = ball[e.v[0]], &b1 = ball[e.v[1]];
-    const Real beyond = s.xi(e) + s.guard / 2;
-    shapes[i] = {.middle = 0.5 * (b0.centre + b1.centre),
-                 .half = 0.5 * (b1.centre - b0.centre),
-                 .reach = (std::max(b0.radius, b1.radius) + beyond) * (1 + kRounding),
-                 .inner_reach = (std::max(b0.inner_radius, b1.inner_radius) + beyond) * (1 + kRounding),
+    const Trust &t0 = trust[e.v[0]], &t1 = trust[e.v[1]];
+    shapes[i] = {.middle = 0.5 * (t0.centre + t1.centre),
+                 .half = 0.5 * (t1.centre - t0.centre),
+                 .reach = (std::max(t0.radius, t1.radius) + s.xi(e) + s.guard / 2) * (1 + kRounding),
                  .v = {e.v[0], e.v[1]},
                  .carrier = s.edge_carrier[i],
-                 .object = s.vertices[e.v[0]].object};
-    boxes[i] = stored_box(inflated(joined(trust[e.v[0]].world, trust[e.v[1]].world), beyond), i, s.edge_carrier[i] == kFixed);
+                 .frame = s.vertex_frame[e.v[0]]};
   }
 };
 struct MakeTriangles {
   SurfaceView s;
   Span<const Trust> trust;
-  Span<const Ball> ball;
-  Span<Lanes> boxes;
+  Span<const int> list;
   Span<TriangleShape> shapes;
-  TAPE_HD void operator()(int i) const {
+  TAPE_HD void operator()(int k) const {
+    const int i = list[k];
     const SurfaceTriangle& t = s.triangles[i];
-    const Ball &b0 = ball[t.v[0]], &b1 = ball[t.v[1]], &b2 = ball[t.v[2]];
-    const Real beyond = s.xi(t) + s.dhat / 2;
-    shapes[i] = {.x = {b0.centre, b1.centre, b2.centre},
-                 .normal = (b1.centre - b0.centre).cross(b2.centre - b0.centre).normalized(),
-                 .reach = (std::max(b0.radius, std::max(b1.radius, b2.radius)) + beyond) * (1 + kRounding),
-                 .inner_reach = (std::max(b0.inner_radius, std::max(b1.inner_radius, b2.inner_radius)) + beyond) * (1 + kRounding),
+    const Trust &t0 = trust[t.v[0]], &t1 = trust[t.v[1]], &t2 = trust[t.v[2]];
+    shapes[i] = {.x = {t0.centre, t1.centre, t2.centre},
+                 .normal = (t1.centre - t0.centre).cross(t2.centre - t0.centre).normalized(),
+                 .reach = (std::max(t0.radius, std::max(t1.radius, t2.radius)) + s.xi(t) + s.dhat / 2) * (1 + kRounding),
                  .v = {t.v[0], t.v[1], t.v[2]},
                  .carrier = s.triangle_carrier[i],
-                 .object = s.vertices[t.v[0]].object};
-    const Box all = joined(trust[t.v[0]].world, joined(trust[t.v[1]].world, trust[t.v[2]].world));
-    boxes[i] = stored_box(inflated(all, beyond), i, s.triangle_carrier[i] == kFixed);
+                 .frame = s.vertex_frame[t.v[0]]};
+  }
+};
+/// Boxes of the listed primitives, as a tree stores them.
+struct BoxEdges {
+  SurfaceView s;
+  Sight sight;
+  Span<const int> list;
+  Span<Lanes> boxes;
+  TAPE_HD void operator()(int k) const {
+    const int i = list[k];
+    boxes[k] = stored_box(sight.box(s, s.edges[i]), i, s.edge_carrier[i] == kFixed);
+  }
+};
+struct BoxTriangles {
+  SurfaceView s;
+  Sight sight;
+  Span<const int> list;
+  Span<Lanes> boxes;
+  TAPE_HD void operator()(int k) const {
+    const int i = list[k];
+    boxes[k] = stored_box(sight.box(s, s.triangles[i]), i, s.triangle_carrier[i] == kFixed);
   }
 };
 
-/// Finds the triangles that a vertex may touch.
+/// Where pairs are looked for. What follows frames is seen from its own, what does not from the world; and the first is seen from the
+/// world too, for pairs with things that do not follow the same frame.
+struct Trees {
+  TreeView own;        ///< of what follows a frame, as its frame sees it
+  TreeView rest;       ///< of what follows none
+  TreeView followers;  ///< of what follows a frame, as the world sees it; empty if everything follows one frame, or nothing does
+  /// Calls f(id, whether it follows the same frame) for what meets the box of one that follows `frame`.
+  template <class F>
+  TAPE_HD void visit(int frame, const Lanes& own_box, const Lanes& world_box, F&& f) const {
+    if (frame != kWorld) own.visit(own_box, [&](int id) { f(id, true); });
+    rest.visit(world_box, [&](int id) { f(id, frame == kWorld); });
+    followers.visit(world_box, [&](int id) { f(id, false); });
+  }
+};
+
+/// Finds the triangles that a vertex may touch. Those that follow the same frame must be near as it sees them, all as the world sees them.
 struct VertexQuery {
   SurfaceView s;
-  Span<const Trust> trust;
-  Span<const Ball> ball;
-  Span<const TriangleShape> triangles;
-  TreeView tree;
+  Sight own, world;
+  Trees trees;
   template <class F>
   TAPE_HD void visit(int v, F&& f) const {
-    const int carrier = s.vertex_carrier[v], object = s.vertices[v].object;
-    const Real beyond = s.vertices[v].xi + s.dhat / 2, reach = ball[v].radius + beyond, inner_reach = ball[v].inner_radius + beyond;
-    const Vec3 centre = ball[v].centre;
-    tree.visit(query_box(inflated(trust[v].world, beyond), 0, carrier == kFixed), [&](int t) {
-      const TriangleShape& b = triangles[t];
+    const int carrier = s.vertex_carrier[v], frame = s.vertex_frame[v];
+    const auto box = [&](const Sight& sight) { return query_box(sight.box(s, v), 0, carrier == kFixed); };
+    trees.visit(frame, box(own), box(world), [&](int t, bool together) {
+      const TriangleShape& b = world.triangles[t];
+      if (together != (frame == b.frame)) return;
       const bool apart = v != b.v[0] && v != b.v[1] && v != b.v[2] && (carrier == kFree || carrier != b.carrier);
-      if (apart && near(centre, b, object == b.object ? std::min(inner_reach + b.inner_reach, reach + b.reach) : reach + b.reach)) f(t);
+      if (apart && (!together || frame == kWorld || near(v, own, own.triangles[t])) && near(v, world, b)) f(t);
     });
   }
-  TAPE_HD static bool near(const Vec3& centre, const TriangleShape& b, Real range) {
+  TAPE_HD bool near(int v, const Sight& sight, const TriangleShape& b) const {
+    const Vec3& centre = sight.trust[v].centre;
+    const Real range = sight.trust[v].radius + s.vertices[v].xi + s.dhat / 2 + b.reach;
     if (std::fabs(b.normal.dot(centre - b.x[0])) > range) return false;
     const Vec3 x[4] = {centre, b.x[0], b.x[1], b.x[2]};
     return combine(closest_vertex_triangle(x).weight, x).squaredNorm() <= range * range;
@@ -204,16 +250,21 @@ struct VertexQuery {
 /// Finds the triangles that a sample may stick to, where everything is within the trust boxes.
 struct SampleQuery {
   SurfaceView s;
-  TreeView tree;
+  Trees trees;
+  Span<const FramePath> frames;  ///< that start at x
   Span<const Vec3> x;
   /// Calls f(pair, distance [m]) for each triangle within dhat of touching the sample, in no order.
   template <class F>
   TAPE_HD void visit(int sample, int n, F&& f) const {
     const int own = sample / (n * n), carrier = s.triangle_carrier[own];
     const SurfaceTriangle& a = s.triangles[own];
+    const int frame = s.vertex_frame[a.v[0]];
     const Vec3 point = s.sample_triangle(sample, own, n).point(x);
-    tree.visit(query_box(inflated(Box{point, point}, s.xi(a) + s.dhat / 2), 0, carrier == kFixed), [&](int t) {
+    const Vec3 seen = frame == kWorld ? point : frames[frame].origin + frames[frame].turn * (point - frames[frame].centre);
+    const auto box = [&](const Vec3& at) { return query_box(inflated(Box{at, at}, s.xi(a) + s.dhat / 2), 0, carrier == kFixed); };
+    trees.visit(frame, box(seen), box(point), [&](int t, bool together) {
       const SurfaceTriangle& b = s.triangles[t];
+      if (together != (frame == s.vertex_frame[b.v[0]])) return;
       if (carrier != kFree && carrier == s.triangle_carrier[t]) return;
       for (int v : a.v)
         for (int w : b.v)
@@ -228,23 +279,23 @@ struct SampleQuery {
 /// Finds the edges of higher id that an edge may touch.
 struct EdgeQuery {
   SurfaceView s;
-  Span<const Trust> trust;
-  Span<const EdgeShape> edges;
-  TreeView tree;
+  Sight own, world;
+  Trees trees;
   template <class F>
   TAPE_HD void visit(int i, F&& f) const {
-    const EdgeShape a = edges[i];
-    const Box box = inflated(joined(trust[a.v[0]].world, trust[a.v[1]].world), s.xi(s.edges[i]) + s.guard / 2);
-    tree.visit(query_box(box, i + 1, a.carrier == kFixed), [&](int j) {
-      const EdgeShape& b = edges[j];
+    const EdgeShape& a = world.edges[i];
+    const auto box = [&](const Sight& sight) { return query_box(sight.box(s, s.edges[i]), i + 1, a.carrier == kFixed); };
+    trees.visit(a.frame, box(own), box(world), [&](int j, bool together) {
+      const EdgeShape& b = world.edges[j];
+      if (together != (a.frame == b.frame)) return;
       const bool apart = a.v[0] != b.v[0] && a.v[0] != b.v[1] && a.v[1] != b.v[0] && a.v[1] != b.v[1];
-      if (apart && (a.carrier == kFree || a.carrier != b.carrier) && near(a, b)) f(j);
+      if (!apart || (a.carrier != kFree && a.carrier == b.carrier)) return;
+      if ((!together || a.frame == kWorld || near(own.edges[i], own.edges[j])) && near(a, b)) f(j);
     });
   }
   TAPE_HD static bool near(const EdgeShape& a, const EdgeShape& b) {
     const Vec3 offset = a.middle - b.middle, across = a.half.cross(b.half);
-    const Real range = a.object == b.object ? std::min(a.inner_reach + b.inner_reach, a.reach + b.reach) : a.reach + b.reach,
-               range2 = range * range, height = offset.dot(across);
+    const Real range = a.reach + b.reach, range2 = range * range, height = offset.dot(across);
     if (height * height > range2 * across.squaredNorm()) return false;  // far apart along the common normal
     return !beside(a.half, b.half, offset, range2) && !beside(b.half, a.half, offset, range2);
   }

@@ -37,8 +37,8 @@ class ContactSearch {
   void forget() { built_ = false; }
   Span<const ContactPair> candidates() const { return pairs_.span(); }
   detail::SurfaceView surface() const { return surface_.view(); }
-  /// For samples of the surface at positions x [nv] m, which must be where the candidates are good.
-  detail::SampleQuery samples(Span<const Vec3> x) const { return {surface_.view(), triangle_tree_.view(), x}; }
+  /// For samples of the surface where `paths` start, which must be where the candidates are good.
+  detail::SampleQuery samples(const PathView& paths);
   const SearchReport& report() const { return report_; }
 
   /// Largest share of the step along `paths` for each object, in [0, 1]; equal for objects that candidates connect.
@@ -48,18 +48,29 @@ class ContactSearch {
   void scale(Span<Vec3> direction) const;
 
  private:
+  /// What one viewpoint shows, in the memory of this side.
+  struct Seen {
+    Buffer<detail::Trust> trust;
+    Buffer<detail::EdgeShape> edges;
+    Buffer<detail::TriangleShape> triangles;
+    detail::Sight view() const { return {trust.span(), edges.span(), triangles.span()}; }
+  };
+  struct EdgesAndTriangles {
+    BoxTree edges, triangles;
+  };
+  void find_frames(const PathView& paths);
+  void make_shapes(const detail::Primitives& list, Seen& seen);
+  void plant(const detail::Primitives& list, const Seen& seen, EdgesAndTriangles& trees);
   void drop_bonded();
   void join_components(const detail::SurfaceView& s);
 
   detail::SurfaceBuffers surface_;
   ObjectGroups groups_;
-  Buffer<detail::Trust> trust_;  ///< [nv]
-  Buffer<detail::Ball> ball_;    ///< [nv]
-  Buffer<Vec3> leader_start_;    ///< [objects] m
-  Buffer<Lanes> triangle_boxes_, edge_boxes_;
-  Buffer<detail::EdgeShape> edges_;
-  Buffer<detail::TriangleShape> triangles_;
-  BoxTree triangle_tree_, edge_tree_;
+  Buffer<Pose> frame_origin_;  ///< [frames] at the rebuild
+  Buffer<FramePath> frames_;   ///< [frames]
+  Seen own_, world_;           ///< each primitive from its own frame (shapes: of followers alone), all from the world
+  EdgesAndTriangles own_trees_, rest_trees_, follower_trees_;
+  Buffer<Lanes> boxes_;
   detail::Hits vertex_hits_, edge_hits_;
   Buffer<VertexTriangle> bonded_names_;
   Buffer<ContactPair> bonded_, found_, pairs_;

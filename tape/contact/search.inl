@@ -8,29 +8,66 @@ inline ContactSearch::ContactSearch(const SurfaceMesh& mesh, Real dhat, Real gua
 }
 
 inline bool ContactSearch::update(const PathView& paths, Real margin) {
-  if (built_ &&
-      reduce(surface_.vertices.size(), true, detail::InTrust{surface_.view(), paths, trust_.span(), leader_start_.span()}, detail::And{})) {
-    ++report_.reuses;
-    return false;
+  if (built_) {
+    find_frames(paths);
+    const detail::SurfaceView s = surface_.view();
+    const detail::InTrust kernel{{s, paths, frames_.span()}, {s, paths, {}}, own_.trust.span(), world_.trust.span()};
+    if (reduce(s.vertices.size, true, kernel, Both{})) {
+      ++report_.reuses;
+      return false;
+    }
   }
   rebuild(paths, margin);
   return true;
 }
 
+inline void ContactSearch::find_frames(const PathView& paths) {
+  frames_.resize(frame_origin_.size());
+  parallel_for(frames_.size(), detail::MakeFrames{surface_.view(), paths, frame_origin_.span(), frames_.span()});
+}
+
+inline detail::SampleQuery ContactSearch::samples(const PathView& paths) {
+  find_frames(paths);
+  const detail::Trees trees{own_trees_.triangles.view(), rest_trees_.triangles.view(), follower_trees_.triangles.view()};
+  return {surface_.view(), trees, frames_.span(), paths.x};
+}
+
+inline void ContactSearch::make_shapes(const detail::Primitives& list, Seen& seen) {
+  const detail::SurfaceView s = surface_.view();
+  parallel_for(list.edges.size(), detail::MakeEdges{s, seen.trust.span(), list.edges.span(), seen.edges.span()});
+  parallel_for(list.triangles.size(), detail::MakeTriangles{s, seen.trust.span(), list.triangles.span(), seen.triangles.span()});
+}
+
+inline void ContactSearch::plant(const detail::Primitives& list, const Seen& seen, EdgesAndTriangles& trees) {
+  const detail::SurfaceView s = surface_.view();
+  boxes_.resize(list.edges.size());
+  parallel_for(boxes_.size(), detail::BoxEdges{s, seen.view(), list.edges.span(), boxes_.span()});
+  trees.edges.build(boxes_.span(), list.edges.span());
+  boxes_.resize(list.triangles.size());
+  parallel_for(boxes_.size(), detail::BoxTriangles{s, seen.view(), list.triangles.span(), boxes_.span()});
+  trees.triangles.build(boxes_.span(), list.triangles.span());
+}
+
 inline void ContactSearch::rebuild(const PathView& paths, Real margin) {
   const detail::SurfaceView s = surface_.view();
-  trust_.resize(s.vertices.size), ball_.resize(s.vertices.size);
-  triangle_boxes_.resize(s.triangles.size), triangles_.resize(s.triangles.size);
-  edge_boxes_.resize(s.edges.size), edges_.resize(s.edges.size);
-  parallel_for(s.vertices.size, detail::MakeTrust{s, paths, margin, trust_.span(), ball_.span()});
-  leader_start_.resize(s.leader.size);
-  parallel_for(s.leader.size, detail::StoreLeaders{s, paths, leader_start_.span()});
-  parallel_for(s.triangles.size, detail::MakeTriangles{s, trust_.span(), ball_.span(), triangle_boxes_.span(), triangles_.span()});
-  parallel_for(s.edges.size, detail::MakeEdges{s, trust_.span(), ball_.span(), edge_boxes_.span(), edges_.span()});
-  triangle_tree_.build(triangle_boxes_.span());
-  edge_tree_.build(edge_boxes_.span());
-  const detail::VertexQuery vertices{s, trust_.span(), ball_.span(), triangles_.span(), triangle_tree_.view()};
-  const detail::EdgeQuery edges{s, trust_.span(), edges_.span(), edge_tree_.view()};
+  frame_origin_.resize(s.lead.size);
+  parallel_for(s.lead.size, detail::StoreFrames{s, paths, frame_origin_.span()});
+  find_frames(paths);
+  for (Seen* seen : {&own_, &world_}) {
+    seen->trust.resize(s.vertices.size), seen->edges.resize(s.edges.size), seen->triangles.resize(s.triangles.size);
+    const Span<const FramePath> frames = seen == &own_ ? frames_.span() : Span<FramePath>{};
+    parallel_for(s.vertices.size, detail::MakeTrust{{s, paths, frames}, margin, seen->trust.span()});
+    make_shapes(surface_.followers, *seen);
+  }
+  make_shapes(surface_.rest, world_);
+  plant(surface_.followers, own_, own_trees_);
+  plant(surface_.rest, world_, rest_trees_);
+  if (surface_.rest.triangles.size() > 0 || s.lead.size > 2) plant(surface_.followers, world_, follower_trees_);
+  const auto trees = [&](BoxTree EdgesAndTriangles::*kind) {
+    return detail::Trees{(own_trees_.*kind).view(), (rest_trees_.*kind).view(), (follower_trees_.*kind).view()};
+  };
+  const detail::VertexQuery vertices{s, own_.view(), world_.view(), trees(&EdgesAndTriangles::triangles)};
+  const detail::EdgeQuery edges{s, own_.view(), world_.view(), trees(&EdgesAndTriangles::edges)};
   report_.vertex_triangle = vertex_hits_.count(s.vertices.size, vertices);
   report_.edge_edge = edge_hits_.count(s.edges.size, edges);
   Buffer<ContactPair>& all = bonded_.size() > 0 ? found_ : pairs_;
@@ -75,7 +112,7 @@ inline std::vector<Real> ContactSearch::limit_steps(const PathView& paths, const
   parallel_for(limit_.size(), detail::Fill{limit_.span(), 1.0});
   for (const Buffer<ContactPair>* pairs : {&pairs_, &bonded_}) {
     const detail::LimitStep kernel{pairs->span(), paths, settings, surface_.vertices.span(), component_.span(), limit_.span()};
-    report_.capped += reduce(pairs->size(), 0, kernel, detail::Plus{});
+    report_.capped += reduce(pairs->size(), 0, kernel, Plus{});
   }
   const std::vector<Real> limit = limit_.download();
   std::vector<Real> of_object;

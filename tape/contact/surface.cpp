@@ -16,7 +16,7 @@ Ends ends_of(const SurfaceTriangle& t, int k) {
 }  // namespace
 
 void SurfaceMesh::add_object(const std::string& name, const std::vector<Vec3>& rest, const std::vector<VertexOwner>& owners,
-                             const std::vector<Index3>& added, Real xi, int material) {
+                             const std::vector<Index3>& added, Real xi, int material, int follows_body) {
   TAPE_CHECK(owners.size() == rest.size());
   const std::size_t first_vertex = vertices.size(), first_triangle = triangles.size();
   const auto x = [&](int v) -> const Vec3& { return rest[static_cast<std::size_t>(v) - first_vertex]; };
@@ -26,6 +26,7 @@ void SurfaceMesh::add_object(const std::string& name, const std::vector<Vec3>& r
     owner.push_back(o);
   }
   objects.push_back(name);
+  follows.push_back(follows_body);
 
   struct Edge {
     Real area = 0;

@@ -35,12 +35,13 @@ struct SurfaceMesh {
   std::vector<SurfaceEdge> edges;
   std::vector<SurfaceTriangle> triangles;
   std::vector<std::string> objects;  ///< names, for messages
+  std::vector<int> follows;          ///< [objects] body that most of it moves and turns with, its own included; -1: none
   int materials = 1;
 
   /// Appends an object; its edges, areas and neighbours follow from its triangles.
   /// @param rest   [n] m
   /// @param added  its triangles, vertices counted from its first
   void add_object(const std::string& name, const std::vector<Vec3>& rest, const std::vector<VertexOwner>& owners,
-                  const std::vector<Index3>& added, Real xi, int material);
+                  const std::vector<Index3>& added, Real xi, int material, int follows_body = -1);
 };
 }  // namespace tape

@@ -13,7 +13,7 @@ inline constexpr int kMaxLevels = 8;  // 8^8 boxes, more than a float can number
 
 struct TreeView {
   Span<const LanesOf8> nodes;
-  Span<const int> id;     ///< [8 nodes of level 0] box at each place
+  Span<const int> id;     ///< [8 nodes of level 0] of the box at each place
   int first[kMaxLevels];  ///< where each level begins in `nodes`
   int levels;
   /// Calls f(id) for every box that meets the query, in Morton order.
@@ -73,6 +73,7 @@ struct MortonKeys {
 };
 struct FillLeaves {
   Span<const Lanes> boxes;
+  Span<const int> ids;    ///< [n], or empty
   Span<const int> order;  ///< [n] box of each place in Morton order
   Span<LanesOf8> nodes;
   Span<int> id;  ///< [8 nodes] places beyond n stay empty
@@ -80,7 +81,7 @@ struct FillLeaves {
     for (int k = 0; k < 8; ++k) {
       const int place = 8 * node + k;
       const bool used = place < order.size;
-      id[place] = used ? order[place] : -1;
+      id[place] = !used ? -1 : ids.size > 0 ? ids[order[place]] : order[place];
       nodes[node].set(k, used ? boxes[order[place]] : empty_box());
     }
   }
@@ -96,7 +97,8 @@ struct FillLevel {
 
 class BoxTree {
  public:
-  void build(Span<const Lanes> boxes) {
+  /// @param ids  [boxes] what visit() calls each; empty: its number
+  void build(Span<const Lanes> boxes, Span<const int> ids = {}) {
     const int n = boxes.size;
     key_.resize(n), order_.resize(n);
     view_ = {};
@@ -113,7 +115,7 @@ class BoxTree {
     const Lanes all = reduce(n, empty_box(), detail::LoadLanes{boxes}, detail::BoxJoin{});
     parallel_for(n, detail::MortonKeys{boxes, all, key_.span(), order_.span()});
     sort_by_key(key_, order_);
-    parallel_for(size[0], detail::FillLeaves{boxes, order_.span(), level(0, size), id_.span()});
+    parallel_for(size[0], detail::FillLeaves{boxes, ids, order_.span(), level(0, size), id_.span()});
     for (int l = 1; l < view_.levels; ++l) parallel_for(size[l], detail::FillLevel{level(l - 1, size), level(l, size)});
   }
   TreeView view() const { return view_; }

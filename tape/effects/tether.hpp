@@ -32,8 +32,6 @@ struct Tether {
     const Element& e = elements[i];
     return s.grip_stiffness[e.slot] * (s.x[e.v] - (anchored(i) ? s.x[e.anchor] : s.grip_target[e.slot]));
   }
-  /// Force [N] of the spring on its vertex.
-  TAPE_HD Vec3 reaction(const StateView& s, int i) const { return -pull(s, i); }
   TAPE_HD Real energy(const StateView& s, int i) const {
     const Real k = s.grip_stiffness[elements[i].slot];
     return k > 0 ? pull(s, i).squaredNorm() / (2 * k) : 0;

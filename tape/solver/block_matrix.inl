@@ -1,13 +1,11 @@
 #include <algorithm>
 
+#include "tape/core/functors.hpp"
 #include "tape/solver/block_matrix.hpp"
 #include "tape/solver/host_blocks.hpp"
 
 namespace tape::TAPE_SIDE {
 namespace block_matrix {
-struct Sum {
-  TAPE_HD int operator()(int a, int b) const { return a + b; }
-};
 struct KeyDiffers {
   Span<const std::uint64_t> a, b;
   TAPE_HD int operator()(int i) const { return a[i] != b[i]; }
@@ -115,8 +113,8 @@ struct CopyDiagonal {
 
 bool SlotGroup::set_pattern(int n, Span<const std::uint64_t> keys, bool with_diagonal) {
   using namespace block_matrix;
-  if (n == n_ && keys.size == slot_keys_.size() && reduce(keys.size, 0, KeyDiffers{keys, slot_keys_.span()}, Sum{}) == 0) return false;
-  TAPE_CHECK(reduce(keys.size, 0, KeyIsWrong{n, keys}, Sum{}) == 0);
+  if (n == n_ && keys.size == slot_keys_.size() && reduce(keys.size, 0, KeyDiffers{keys, slot_keys_.span()}, Plus{}) == 0) return false;
+  TAPE_CHECK(reduce(keys.size, 0, KeyIsWrong{n, keys}, Plus{}) == 0);
   n_ = n;
   slot_keys_.resize(keys.size);
   parallel_for(keys.size, CopyKeys{keys, slot_keys_.span()});

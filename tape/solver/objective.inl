@@ -1,4 +1,5 @@
 #pragma once
+#include "tape/core/functors.hpp"
 #include "tape/solver/objective.hpp"
 
 namespace tape::TAPE_SIDE {
@@ -48,10 +49,6 @@ struct FirstNonFiniteSlot {
     return count;
   }
 };
-struct Smaller {
-  TAPE_HD int operator()(int a, int b) const { return a < b ? a : b; }
-};
-
 template <class T>
 struct FlagActive {
   T term;
@@ -219,7 +216,7 @@ inline std::string Objective::first_non_finite(const StateView& s) {
   std::string where;
   for_each([&]<class T>(std::string_view name, Term<T>& term) {
     const int n = term.view.elements.size;
-    const int i = where.empty() ? reduce(n, n, objective::FirstNonFinite<T>{term.view, s, n}, objective::Smaller{}) : n;
+    const int i = where.empty() ? reduce(n, n, objective::FirstNonFinite<T>{term.view, s, n}, Smaller{}) : n;
     if (i < n) where = "effect '" + std::string(name) + "', element " + std::to_string(i);
   });
   return where;
@@ -236,7 +233,7 @@ inline std::string Objective::first_non_finite_derivative() {
         {group.gradient.span().data + term.gradient_base, group.gradient.size() - term.gradient_base},
         {group.hessian.span().data + term.hessian_base, group.hessian.size() - term.hessian_base},
         term.count};
-    if (const int i = reduce(term.count, term.count, kernel, objective::Smaller{}); i < term.count)
+    if (const int i = reduce(term.count, term.count, kernel, Smaller{}); i < term.count)
       where = "derivatives of effect '" + std::string(name) + "', active element " + std::to_string(i);
   });
   return where;

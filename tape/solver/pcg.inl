@@ -1,13 +1,11 @@
 #include <cmath>
 
+#include "tape/core/functors.hpp"
 #include "tape/solver/error_estimate.hpp"
 #include "tape/solver/pcg.hpp"
 
 namespace tape::TAPE_SIDE {
 namespace pcg {
-struct Add {
-  TAPE_HD Real operator()(Real a, Real b) const { return a + b; }
-};
 struct Start {  // x = 0, r = b
   Span<const Vec3> b;
   Span<Vec3> x, r;
@@ -15,10 +13,6 @@ struct Start {  // x = 0, r = b
     x[i] = Vec3::Zero();
     r[i] = b[i];
   }
-};
-struct Dot {
-  Span<const Vec3> a, b;
-  TAPE_HD Real operator()(int i) const { return a[i].dot(b[i]); }
 };
 struct Direction {  // p = z + beta p
   Real beta;
@@ -65,7 +59,7 @@ LinearReport Pcg::solve(const BlockMatrix& a, Span<const Vec3> b, Span<Vec3> x, 
   parallel_for(n, pcg::Start{b, x, r});
   report.dropped = m.dropped();
   m.apply(r, z);
-  Real rho = reduce(n, Real{0}, pcg::Dot{r, z}, pcg::Add{});
+  Real rho = reduce(n, Real{0}, Dot{r, z}, Plus{});
   if (rho == 0) {  // b = 0
     report.converged = true;
     return report;
@@ -73,7 +67,7 @@ LinearReport Pcg::solve(const BlockMatrix& a, Span<const Vec3> b, Span<Vec3> x, 
   parallel_for(n, pcg::FirstDirection{z, p});
   EnergyErrorEstimate estimate;
   while (report.iterations < max_iterations) {
-    const Real curvature = reduce(n, Real{0}, pcg::Curvature{a.view(), p, a_p}, pcg::Add{});
+    const Real curvature = reduce(n, Real{0}, pcg::Curvature{a.view(), p, a_p}, Plus{});
     if (!(curvature > 0) || !(rho > 0)) {
       report.negative_curvature = true;
       return report;
@@ -86,7 +80,7 @@ LinearReport Pcg::solve(const BlockMatrix& a, Span<const Vec3> b, Span<Vec3> x, 
     report.converged = report.error_estimate <= tolerance;
     if (report.converged) return report;
     m.apply(r, z);
-    const Real rho_next = reduce(n, Real{0}, pcg::Dot{r, z}, pcg::Add{});
+    const Real rho_next = reduce(n, Real{0}, Dot{r, z}, Plus{});
     if (rho_next == 0) {  // solved to the bit
       report.error_estimate = 0;
       report.converged = true;
@@ -99,8 +93,8 @@ LinearReport Pcg::solve(const BlockMatrix& a, Span<const Vec3> b, Span<Vec3> x, 
 }
 
 Real relative_residual(const BlockMatrix& a, Span<const Vec3> b, Span<const Vec3> x) {
-  const Real b2 = reduce(b.size, Real{0}, pcg::Dot{b, b}, pcg::Add{});
-  const Real r2 = reduce(b.size, Real{0}, pcg::SquaredResidual{a.view(), b, x}, pcg::Add{});
+  const Real b2 = reduce(b.size, Real{0}, Dot{b, b}, Plus{});
+  const Real r2 = reduce(b.size, Real{0}, pcg::SquaredResidual{a.view(), b, x}, Plus{});
   return b2 > 0 ? std::sqrt(r2 / b2) : 0;
 }
 }  // namespace tape::TAPE_SIDE

@@ -1,3 +1,4 @@
+#include "tape/core/functors.hpp"
 #include "tape/solver/preconditioner.hpp"
 
 namespace tape::TAPE_SIDE {
@@ -26,9 +27,6 @@ struct Invert {  // returns how many blocks are not positive definite
     return ok ? 0 : 1;
   }
 };
-struct Add {
-  TAPE_HD int operator()(int a, int b) const { return a + b; }
-};
 struct Apply {
   Span<const int> partner;
   Span<const Mat3> diagonal, coupling;
@@ -55,7 +53,7 @@ bool BlockJacobi::build(const BlockMatrix& a, Span<const Vec3>) {
     coupling_.resize(a.size());
   }
   const block_jacobi::Invert invert{a.view(), partner_.span(), diagonal_.span(), coupling_.span()};
-  return reduce(a.size(), 0, invert, block_jacobi::Add{}) == 0;
+  return reduce(a.size(), 0, invert, Plus{}) == 0;
 }
 
 void BlockJacobi::apply(Span<const Vec3> r, Span<Vec3> z) {

@@ -108,9 +108,6 @@ struct AccuracyToJudge {
   StateView s;
   TAPE_HD Real operator()(int i) const { return term.accuracy_to_judge(s, i); }
 };
-struct SmallerReal {
-  TAPE_HD Real operator()(Real a, Real b) const { return a < b ? a : b; }
-};
 template <class Memory>
 struct Gather {
   Span<const Memory> after;
@@ -163,7 +160,7 @@ inline Real Objective::accuracy_to_judge(const StateView& s) {
   for_each([&]<class T>(std::string_view, Term<T>& term) {
     if constexpr (requires { term.view.accuracy_to_judge(s, 0); }) {
       const objective::AccuracyToJudge<T> kernel{term.view, s};
-      smallest = reduce(term.view.elements.size, smallest, kernel, objective::SmallerReal{});
+      smallest = reduce(term.view.elements.size, smallest, kernel, Smaller{});
     }
   });
   return smallest;

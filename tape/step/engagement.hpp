@@ -4,6 +4,18 @@
 #include "tape/step/world.hpp"
 
 namespace tape {
+/// Vertices of what sticks to the triangle of a remembered pair: one, or those of the triangle that a sample lies in.
+std::vector<int> sticking_vertices(const World& world, const VertexTriangle& pair);
+std::vector<int> sticking_vertices(const World& world, const SampleTriangle& pair);
+
+/// How the materials of a remembered pair adhere.
+template <class Name>
+Adhesion adhesion_of(const World& world, const Name& pair) {
+  const auto material = [&](int v) { return world.surface.vertices[static_cast<std::size_t>(v)].material; };
+  const int triangle = world.surface.triangles[static_cast<std::size_t>(pair.triangle)].v[0];
+  return world.setup.scene.adhesion(material(sticking_vertices(world, pair)[0]), material(triangle));
+}
+
 /// How much adhesion is left at each vertex of the strips [strip vertices], in [0, 1]: the most of all pairs that name it. Of a pair: its
 /// beta; 1 for a bond; of area the stiffness that is left of it. 0 where nothing adheres.
 std::vector<Real> vertex_engagement(const World& world, const State& state);

@@ -6,7 +6,7 @@
 
 namespace tape {
 struct SettleParams {
-  Real speed = 1e-5;    ///< [m/s] nothing may be faster in the last step
+  Real speed = 1e-7;    ///< [m/s] nothing may be faster in the last step; steps of 1 s move by 0.1 um then
   int max_steps = 100;  ///< after which it counts as failed
   /// Called after each step with their number and the largest speed [m/s]; false: stop. May be empty.
   std::function<bool(int, Real)> go_on = {};

@@ -5,7 +5,7 @@
 
 #include "tape/contact/intersection.hpp"
 #include "tape/core/hdf5_handle.hpp"
-#include "tape/step/world.hpp"
+#include "tape/step/engagement.hpp"
 
 namespace tape {
 namespace {
@@ -69,13 +69,36 @@ struct Read {
   }
 };
 
-/// Of what a state must fit: vertices, triangles, rest shape and owners.
+/// Of what a state must fit: vertices, triangles, rest shape and owners, and how triangles are cut into samples.
 std::string world_hash(const World& world) {
   State digest;
   for (const Index3& t : world.assembly.triangles) digest.x.push_back(t.cast<Real>());
   for (const Vec2& r : world.assembly.rest) digest.x.push_back({r.x(), r.y(), 0});
   for (const VertexOwner& o : world.assembly.owner) digest.x.push_back({static_cast<Real>(o.block), static_cast<Real>(o.body), 0});
+  if (world.is_on(CohesiveZone::name)) digest.step = params<CohesiveZone>(world.setup.effects).samples;
   return digest.hash();
+}
+
+bool exists(const World& world, const VertexTriangle& pair) {
+  return pair.vertex < std::ssize(world.surface.vertices) && pair.triangle < std::ssize(world.surface.triangles);
+}
+bool exists(const World& world, const SampleTriangle& pair) {
+  const int n = params<CohesiveZone>(world.setup.effects).samples, triangles = static_cast<int>(world.surface.triangles.size());
+  return pair.sample / (n * n) < triangles && pair.triangle < triangles;
+}
+/// What is remembered must be of effects that are on, of things that exist, and of interfaces that adhere by the same law.
+/// @throws InputError
+template <class T>
+void check_memory(const World& world, const MemoryOf<T>& memory) {
+  if constexpr (Remembers<T>) {
+    const std::string pairs = "it remembers pairs of '" + std::string(T::name) + "'";
+    if (!memory.pairs.empty() && !world.is_on(T::name)) throw InputError(pairs + ", which is off");
+    for (const typename T::Memory& m : memory.pairs) {
+      if (!exists(world, m)) throw InputError(pairs + " that there are not");
+      if (const AdhesionLaw now = adhesion_of(world, m).law; now != T::of_law)
+        throw InputError(pairs + ", at an interface whose law is " + to_text(now));
+    }
+  }
 }
 
 void write_array(hid_t file, const char* name, hid_t type, const void* data, std::size_t n) {
@@ -157,6 +180,7 @@ State load_snapshot(const std::string& file, const World& world) {
     refuse("its arrays do not fit");
   }
   try {
+    std::apply([&](const auto&... memory) { (check_memory(world, memory), ...); }, state.memory);
     check_start(vertex_positions(world, state), world.surface, world.setup.scene.dhat(), pairs_out_of_contact(state.memory));
   } catch (const InputError& e) {
     refuse(e.what());

@@ -1,6 +1,5 @@
 #pragma once
 #include <array>
-#include <atomic>
 #include <limits>
 #include <memory>
 #include <string>
@@ -73,7 +72,7 @@ class Stepper {
   virtual ~Stepper() = default;
   /// One step of setup.scene.time.dt. On failure (report.ok false) the state is the last good one.
   virtual StepReport step(State& state) = 0;
-  /// Largest contact force [N] per surface vertex at the last state, for pictures.
+  /// Magnitude [N] of the sum of the barrier's forces on each vertex at the last state, for pictures.
   virtual std::vector<Real> contact_force() const = 0;
 };
 

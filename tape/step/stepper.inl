@@ -21,16 +21,6 @@ struct Negate {
   Span<Vec3> out;
   TAPE_HD void operator()(int i) const { out[i] = -in[i]; }
 };
-struct Dot {
-  Span<const Vec3> a, b;
-  TAPE_HD Real operator()(int i) const { return a[i].dot(b[i]); }
-};
-struct Plus {
-  TAPE_HD Real operator()(Real a, Real b) const { return a + b; }
-};
-struct Larger {
-  TAPE_HD Real operator()(Real a, Real b) const { return a > b ? a : b; }
-};
 /// Largest component [m] of the move of a vertex over a whole path.
 struct Travel {
   PathView paths;
@@ -115,7 +105,7 @@ class SideStepper final : public Stepper {
     along_.upload(along);
     for (Real m : world.assembly.mass) moving_mass_ += m;
     const Real dhat = world.setup.scene.dhat();
-    if (is_on("barrier")) search_.emplace(world.surface, dhat, world.setup.scene.contact.guard * dhat);
+    if (world.is_on(Barrier::name)) search_.emplace(world.surface, dhat, world.setup.scene.contact.guard * dhat);
     begin(state, world.setup.scene.time.dt);
     std::vector<bool> on;
     for (const PlanLine& line : world.plan) on.push_back(line.on);
@@ -163,26 +153,20 @@ class SideStepper final : public Stepper {
       if (b.block >= 0) layout.body_blocks.push_back(b.block);
     return layout;
   }
-  bool is_on(std::string_view name) const {
-    for (const PlanLine& line : world_.plan)
-      if (line.name == name) return line.on;
-    return false;
-  }
 
   /// Brings the state to this side and finds what is prescribed for its end.
   void begin(const State& state, Real dt) {
     const Drive drive = Drive::at(world_, state, dt);
     const std::vector<Vec3> x = vertex_positions(world_, state);
-    std::vector<Vec3> x_tilde = x, centre;
+    std::vector<Vec3> x_tilde = x;
     for (std::size_t v = 0; v < state.x.size(); ++v) x_tilde[v] = state.x[v] + dt * state.v[v];
     std::vector<Pose> pose;
-    for (const BodyState& b : state.bodies) pose.push_back(b.pose), centre.push_back(b.pose.position);
+    for (const BodyState& b : state.bodies) pose.push_back(b.pose);
     dt_ = dt;
     extent_ = 0;
     for (const Vec3& p : x) extent_ = std::fmax(extent_, p.cwiseAbs().maxCoeff());
     start_.x.upload(x);
     start_.body.upload(pose);
-    start_.body_position.upload(centre);
     x_tilde_.upload(x_tilde);
     body_target_.upload(drive.body_target);
     grip_target_.upload(drive.grip_target);
@@ -283,7 +267,7 @@ class SideStepper final : public Stepper {
     StateView s = view(now_);
     s.dt = dt;
     s.normal = normals_->at(s.x);
-    return objective_->remember(s, search_->samples(s.x));
+    return objective_->remember(s, search_->samples(coordinates_.paths(now_, direction_.span())));
   }
   /// Candidates and elements of a step that starts at now_ with this memory.
   void recall(const EffectMemory& memory) {
@@ -316,8 +300,8 @@ class SideStepper final : public Stepper {
     for (int k = 0; k < params.max_newton; ++k) {
       ++report.newton;
       if (!find_direction(report)) return false;
-      const Real slope = -reduce(direction_.size(), 0.0, stepping::Dot{right_.span(), direction_.span()}, stepping::Plus{});
-      const Real moved = reduce(now_.x.size(), 0.0, stepping::Travel{coordinates_.paths(now_, direction_.span())}, stepping::Larger{});
+      const Real slope = -reduce(direction_.size(), 0.0, Dot{right_.span(), direction_.span()}, Plus{});
+      const Real moved = reduce(now_.x.size(), 0.0, stepping::Travel{coordinates_.paths(now_, direction_.span())}, Larger{});
       if (!std::isfinite(moved) || !std::isfinite(slope))
         return fail(report, "the Newton direction is not finite" + in_brackets(objective_->first_non_finite_derivative()));
       if (moved <= kPositionRoundOff * extent_) return converged_to();  // no update is left that positions could hold
@@ -385,7 +369,7 @@ class SideStepper final : public Stepper {
   /// Moves now_ along direction_: limited by CCD for each connected component, then halved until the energy falls.
   bool line_search(Real slope, StepReport& report, bool& at_round_off) {
     if (search_) {
-      const Real way = reduce(now_.x.size(), 0.0, stepping::Way{coordinates_.paths(now_, direction_.span())}, stepping::Larger{});
+      const Real way = reduce(now_.x.size(), 0.0, stepping::Way{coordinates_.paths(now_, direction_.span())}, Larger{});
       if (const Real longest = world_.setup.scene.contact.max_move; way > longest)
         parallel_for(direction_.size(), stepping::Scale{direction_.span(), longest / way});
       update_candidates(direction_.span());
@@ -443,7 +427,7 @@ class SideStepper final : public Stepper {
         report.min_gap = std::fmin(smallest_gap(pairs, s.x).gap, smallest_gap(search_->bonded(), s.x).gap);
       }
       if constexpr (requires { term.view.strain(s, 0); })
-        report.max_strain = reduce(term.view.elements.size, 0.0, stepping::Strain<T>{term.view, s}, stepping::Larger{});
+        report.max_strain = reduce(term.view.elements.size, 0.0, stepping::Strain<T>{term.view, s}, Larger{});
       report.effects.push_back(line);
     });
     if (search_) report.stages = {{"broad_phase", search_ms_}, {"ccd", ccd_ms_}};

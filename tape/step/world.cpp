@@ -1,5 +1,7 @@
 #include "tape/step/world.hpp"
 
+#include <algorithm>
+
 #include "tape/bodies/free_flight.hpp"
 #include "tape/contact/containment.hpp"
 #include "tape/contact/intersection.hpp"
@@ -61,6 +63,10 @@ World World::build(Setup setup) {
   check_start(world.assembly.x, world.surface, world.setup.scene.dhat());
   check_nothing_inside(world.assembly.x, world.surface);
   return world;
+}
+
+bool World::is_on(std::string_view effect) const {
+  return std::ranges::any_of(plan, [&](const PlanLine& line) { return line.name == effect && line.on; });
 }
 
 State State::start(const World& world) {

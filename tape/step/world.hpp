@@ -2,6 +2,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tape/bodies/assembly.hpp"
@@ -38,6 +39,7 @@ struct World {
 
   /// Checks settings and initial state.  @throws InputError saying what is wrong and where
   static World build(Setup setup);
+  bool is_on(std::string_view effect) const;
 };
 
 struct BodyState {

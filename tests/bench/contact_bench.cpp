@@ -80,7 +80,8 @@ class Barriers {
 
 struct Scene {
   test::Surface surface;
-  Buffer<Vec3> x, direction, bodies;
+  Buffer<Vec3> x, direction;
+  Buffer<Pose> bodies;
   Buffer<VertexOwner> owner;
   ContactSearch search;
   std::optional<Barriers> barriers;

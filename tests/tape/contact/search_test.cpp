@@ -31,8 +31,10 @@ struct Scene {
     for (int v = 0; v < p.x.size; ++v) surface.x[static_cast<std::size_t>(v)] = p[v].at(t);
   }
   test::Surface surface;
-  std::vector<Vec3> direction, bodies;
-  Buffer<Vec3> device_x, device_direction, device_bodies;
+  std::vector<Vec3> direction;
+  std::vector<Pose> bodies;
+  Buffer<Vec3> device_x, device_direction;
+  Buffer<Pose> device_bodies;
   Buffer<VertexOwner> device_owner;
 };
 
@@ -121,6 +123,66 @@ TEST(ContactSearch, PathBoxesAreFiniteHoweverSmallTheTurn) {  // Newton's last u
   }
 }
 
+TEST(ContactSearch, PathBoxesSeenFromAFrameHoldThePath) {
+  std::mt19937_64 generator(1);
+  std::uniform_real_distribution<Real> u(-1, 1);
+  const auto random = [&](Real size) { return Vec3(size * Vec3(u(generator), u(generator), u(generator))); };
+  for (Real spin : {0.0, 1e-161, 1e-3, 0.3, 3.0}) {
+    for (int k = 0; k < 50; ++k) {
+      const FramePath frame{random(1), random(1), random(spin), rotation_exp(random(3)), random(1)};
+      const bool free = k % 2 == 0;
+      const VertexPath path{random(1), random(1), free ? Vec3(Vec3::Zero()) : random(1), free ? Vec3(Vec3::Zero()) : random(1)};
+      const Box box = inflated(path_box(frame, path), 1e-12);
+      for (Real t = 0; t <= 1; t += 1.0 / 64) {
+        const Vec3 y = frame.origin + frame.turn * rotate(-t * frame.spin, path.at(t) - frame.centre - t * frame.velocity);
+        ASSERT_TRUE(box.contains({y, y})) << "spin " << spin << ", t " << t;
+      }
+      const VertexPath carried{frame.centre, frame.velocity, random(1), frame.spin};
+      EXPECT_LT(path_box(frame, carried).radius(), 1e-14) << "what moves with the frame stands still";
+    }
+  }
+}
+
+TEST(ContactSearch, ARollThatTurnsAndFliesHasTheCandidatesOfOneAtRest) {
+  test::Surface roll = test::wound_strip(4, 2.7e-4, kXi);
+  const VertexOwner hub{roll.blocks, 0};
+  std::vector<Vec3> ring;
+  std::vector<Index3> faces;
+  constexpr int kSides = 48;
+  for (int k = 0; k < kSides; ++k)
+    for (Real z : {0.0, 0.019}) {
+      const Real angle = 2 * 3.14159265358979323846 * k / kSides;
+      ring.emplace_back(20.9e-3 * std::cos(angle), 20.9e-3 * std::sin(angle), z);
+    }
+  for (int k = 0; k < kSides; ++k) {
+    const int a = 2 * k, b = 2 * ((k + 1) % kSides);
+    faces.emplace_back(a, b, b + 1), faces.emplace_back(a, b + 1, a + 1);
+  }
+  test::add_object(roll, ring, faces, 0, &hub);
+  roll.blocks += 2;
+  roll.mesh.follows = {0, 0};
+  std::set<Key> at_rest;
+  for (const auto& [spin, flight] : {std::pair(Vec3(0, 0, 0), Vec3(0, 0, 0)), std::pair(Vec3(0, 0, 0.1), Vec3(0.03, -0.02, 0.01))}) {
+    Scene scene(roll);
+    scene.bodies = {{rotation_exp(Vec3(1, 2, 3)), Vec3(1e-4, 0, 0.01)}};
+    scene.jiggle(2e-5, 5);
+    const Vec3 centre = scene.bodies[0].position;
+    for (std::size_t v = 0; v < roll.x.size(); ++v)
+      if (const VertexOwner o = roll.mesh.owner[v]; o.body < 0)
+        scene.direction[static_cast<std::size_t>(o.block)] += flight + rotate(spin, roll.x[v] - centre) - (roll.x[v] - centre);
+    scene.direction[static_cast<std::size_t>(hub.block)] = flight, scene.direction[static_cast<std::size_t>(hub.block) + 1] = spin;
+    ContactSearch search(scene.mesh(), kDhat, kDhat);
+    search.update(scene.paths(), 5e-5);
+    const std::set<Key> found = keys(search.candidates());
+    expect_holds_all(found, near_pairs(scene, 2 * kXi, kDhat));
+    if (spin.isZero()) {
+      at_rest = found;
+    } else {
+      EXPECT_LT(found.size(), 3 * at_rest.size()) << "a way of 11 layers";
+    }
+  }
+}
+
 TEST(ContactSearch, CandidatesHoldEveryPairOfRollsAndFolds) {
   for (const test::Surface& s : {test::wound_strip(1.3, 2.7e-4, kXi), test::folded_strip(3, 10, 2.7e-4, kXi)}) {
     Scene scene(s);
@@ -204,7 +266,7 @@ TEST(ContactSearch, CandidatesHoldEveryPairOfATurningBody) {
   add_tile(s, 0, 0, &body);
   s.blocks = 2;
   Scene scene(s);
-  scene.bodies = {Vec3(0.005, 0, 0.005)};
+  scene.bodies = {{Mat3::Identity(), Vec3(0.005, 0, 0.005)}};
   scene.direction = {Vec3(1e-4, 0, 0), Vec3(0, 0, 3.1)};  // about the z axis: the sides dip 5 mm, through the table
   ContactSearch search(scene.mesh(), 1.5e-3, 1.5e-3);
   search.update(scene.paths(), 0);
@@ -269,7 +331,7 @@ TEST(ContactSearch, AnArcThatOnlyBulgesOutOfItsBoxIsNotOverlooked) {
   add_tile(s, 0, 0, &body);
   s.blocks = 2;
   Scene scene(s);
-  scene.bodies = {Vec3(0.005, 0, 0.005)};
+  scene.bodies = {{Mat3::Identity(), Vec3(0.005, 0, 0.005)}};
   scene.direction = {Vec3::Zero(), Vec3::Zero()};
   ContactSearch search(scene.mesh(), kDhat, kDhat);
   search.update(scene.paths(), 1e-4);
@@ -286,7 +348,7 @@ TEST(ContactSearch, NoMotionLeavesNoPairBetweenFixedThingsOrWithinOneBody) {
   add_tile(s, 0.5, 0.5001, &body);
   s.blocks = 2;
   Scene scene(s);
-  scene.bodies = {Vec3(0.5, 0.5, 0)};
+  scene.bodies = {{Mat3::Identity(), Vec3(0.5, 0.5, 0)}};
   ContactSearch search(scene.mesh(), kDhat, kDhat);
   search.update(scene.paths(), 1e-3);
   EXPECT_EQ(search.candidates().size, 0);
@@ -327,7 +389,7 @@ TEST(ContactSearch, TwoObjectsOnOneBodyShareAStepLimit) {
   add_tile(s, 0.5, 0.5, &body);
   s.blocks = 2;
   Scene scene(s);
-  scene.bodies = {Vec3(0, 0, 0)};
+  scene.bodies = {{Mat3::Identity(), Vec3(0, 0, 0)}};
   scene.direction = {Vec3(0, -2e-3, 0), Vec3::Zero()};
   ContactSearch search(scene.mesh(), kDhat, kDhat);
   search.update(scene.paths(), 0);
@@ -375,7 +437,7 @@ TEST(ContactSearch, SamplesFindEveryTriangleInReach) {
     scene.move(0.7);  // within the trust boxes
     const std::vector<Vec3>& x = scene.surface.x;
     const std::vector<SurfaceTriangle>& triangles = scene.mesh().triangles;
-    const on_cpu::detail::SampleQuery query = search.samples({x.data(), static_cast<int>(x.size())});
+    const on_cpu::detail::SampleQuery query = search.samples(scene.paths());
     constexpr int kSide = 3;
     std::set<std::pair<int, int>> found, near;
     for (int sample = 0; sample < static_cast<int>(triangles.size()) * kSide * kSide; ++sample) {

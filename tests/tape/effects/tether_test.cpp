@@ -18,5 +18,4 @@ TEST(Tether, PullsToItsTargetOrItsAnchorAndAnOpenOneNot) {
   EXPECT_EQ(built.term.pull(s, 2), Vec3(50 * (world.x[2] - world.x[static_cast<std::size_t>(anchor)])));
   const VecN<6> g = built.term.gradient(s, 2);
   EXPECT_EQ(g.head<3>(), -g.tail<3>());
-  EXPECT_EQ(built.term.reaction(s, 2), Vec3(-built.term.pull(s, 2)));
 }

@@ -1,0 +1,32 @@
+#pragma once
+#include "tape/core/types.hpp"
+
+/// Values and combinations of reductions that several folders need.
+namespace tape {
+struct Plus {
+  template <class T>
+  TAPE_HD T operator()(const T& a, const T& b) const {
+    return a + b;
+  }
+};
+struct Smaller {
+  template <class T>
+  TAPE_HD T operator()(const T& a, const T& b) const {
+    return b < a ? b : a;
+  }
+};
+struct Larger {
+  template <class T>
+  TAPE_HD T operator()(const T& a, const T& b) const {
+    return a < b ? b : a;
+  }
+};
+struct Both {
+  TAPE_HD bool operator()(bool a, bool b) const { return a && b; }
+};
+/// Term i of the scalar product of two fields.
+struct Dot {
+  Span<const Vec3> a, b;
+  TAPE_HD Real operator()(int i) const { return a[i].dot(b[i]); }
+};
+}  // namespace tape
