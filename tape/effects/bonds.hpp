@@ -35,11 +35,8 @@ struct Bonds {
   Real dhat;   ///< [m]
   Real kappa;  ///< [Pa] of the barrier
 
-  static std::string needed(const Scene& scene, const Params&) {
-    for (const AdhesivePair& a : scene.adhesives)
-      if (a.adhesion.law == AdhesionLaw::bond) return "interfaces";
-    return "";
-  }
+  static constexpr AdhesionLaw of_law = AdhesionLaw::bond;
+  static std::string needed(const Scene& scene, const Params&) { return scene.uses(of_law) ? "interfaces" : ""; }
   static Bonds build(const Scene& scene, const Assembly&, const Params&, std::vector<Element>&) {
     return {{}, scene.dhat(), scene.contact.kappa};
   }
@@ -87,7 +84,7 @@ struct Bonds {
   /// Bonds form where the vertex stands over the face, within reach and not pressed below the floor.
   TAPE_HD bool begin(const ContactPair& pair, const StateView& s, Memory& out) const {
     const Adhesion& a = s.adhesion[pair.interface];
-    if (a.law != AdhesionLaw::bond) return false;
+    if (a.law != of_law) return false;
     const PairState p = PairState::at(pair, s.x);
     const Real gap = (p.d - pair.xi) / dhat;
     constexpr Real kFlat = 1e-6;  // [m] a tetrahedron that is no higher has no shape to remember

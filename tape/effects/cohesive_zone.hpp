@@ -68,11 +68,8 @@ struct CohesiveZone {
   int samples;    ///< n
   int triangles;  ///< those of strips, the first of the surface
 
-  static std::string needed(const Scene& scene, const Params&) {
-    for (const AdhesivePair& a : scene.adhesives)
-      if (a.adhesion.law == AdhesionLaw::per_area) return "interfaces";
-    return "";
-  }
+  static constexpr AdhesionLaw of_law = AdhesionLaw::per_area;
+  static std::string needed(const Scene& scene, const Params&) { return scene.uses(of_law) ? "interfaces" : ""; }
   static CohesiveZone build(const Scene& scene, const Assembly& assembly, const Params& params, std::vector<Element>&) {
     int triangles = 0;
     for (const StripPart& strip : assembly.strips) triangles += strip.triangles;
@@ -142,7 +139,7 @@ struct CohesiveZone {
   /// A sample sticks where it is within reach and the faces that it and the triangle turn to each other adhere.
   TAPE_HD bool begin(const SamplePair& pair, const StateView& s, Memory& out) const {
     const Adhesion& a = s.adhesion[pair.interface];
-    if (a.law != AdhesionLaw::per_area) return false;
+    if (a.law != of_law) return false;
     const Vec3 x[4] = {pair.point(s.x), s.x[pair.v[3]], s.x[pair.v[4]], s.x[pair.v[5]]};
     const Closest closest = closest_vertex_triangle(x);
     const Vec3 offset = combine(closest.weight, x);

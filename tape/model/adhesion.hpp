@@ -15,6 +15,7 @@ constexpr auto enum_names(SlipFrom) { return std::array<std::string_view, 2>{"st
 
 /// Faces of a strip: its normal points out of the backing. What adheres to a body adheres to both.
 enum class Face : int { backing, sticky };
+constexpr auto enum_names(Face) { return std::array<std::string_view, 2>{"backing", "sticky"}; }
 
 /// The cohesive law of the paper, eq. 2 and 3: newtons per vertex-triangle pair, so that the answer depends on the mesh.
 struct PairCohesion {
@@ -74,8 +75,8 @@ struct BondLaw {
   void fields(F&& f) {
     f("kappa_b", kappa_b, "Pa", Range::positive(), "stiffness of a bond");
     f("break_force", break_force, "N", Range::positive(), "force on the vertex at which a bond in tension is released");
-    f("reach", reach, "1", Range::closed(0.5, 1), "gap up to which a pair bonds, in units of dhat");
-    f("floor", floor, "1", Range::closed(0, 0.9), "gap from which on a pair bonds, in units of dhat: what is pressed hard does not");
+    f("bond_reach", reach, "1", Range::closed(0.5, 1), "gap up to which a pair bonds, in units of dhat");
+    f("bond_floor", floor, "1", Range::closed(0, 0.9), "gap from which on a pair bonds, in units of dhat: what is pressed hard does not");
     f("cooldown", cooldown, "steps", Range::closed(0, 1000), "for how long a released pair does not bond again");
   }
 };

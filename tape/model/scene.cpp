@@ -28,4 +28,8 @@ Adhesion Scene::adhesion(int first, int second) const {
   }
   return {};
 }
+
+bool Scene::uses(AdhesionLaw law) const {
+  return std::ranges::any_of(adhesives, [&](const AdhesivePair& p) { return p.adhesion.law == law; });
+}
 }  // namespace tape

@@ -167,5 +167,6 @@ struct Scene {
   Real dhat() const;                               ///< [m] contact.dhat, or the smallest of the films' (1e-3 without strips)
   Real mu(int a, int b) const;                     ///< friction of two materials
   Adhesion adhesion(int first, int second) const;  ///< of two materials
+  bool uses(AdhesionLaw law) const;                ///< whether an interface does
 };
 }  // namespace tape

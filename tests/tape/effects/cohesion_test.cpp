@@ -32,6 +32,7 @@ struct Stuck {
     StateView s{};
     s.dt = dt;
     s.x = {at.data(), 4};
+    s.x_start = {start.data(), 4};
     s.adhesion = {adhesion.data(), 1};
     s.normal = {normal.data(), 4};
     return s;
@@ -42,7 +43,7 @@ struct Stuck {
     cohesion.elements = {&element, 1};
     return view(x);
   }
-  Cohesion::Memory engaged(Real beta = 1) const { return {{0, 7}, beta, {0, 0}}; }
+  Cohesion::Memory engaged(Real beta = 1) const { return {{0, 7}, beta, Vec3::Zero()}; }
 };
 }  // namespace
 
@@ -67,6 +68,27 @@ TEST(Cohesion, APairThatTurnsAsAWholeDoesNotSlip) {
   const StateView end = s.step(s.engaged());
   s.element.rest = PairState::at(s.pair, end.x).d;
   EXPECT_LT(s.cohesion.gradient(end, 0).norm(), 1e-12 * 0.675);
+}
+TEST(Cohesion, InTheFixedFrameAPairThatTurnsSlipsByItsDistanceTimesTheAngle) {
+  Stuck s;
+  s.cohesion.frame = SlipFrame::fixed;
+  const Mat3 turn = rotation_exp(Vec3(0, 0.01, 0));
+  for (int k = 0; k < 4; ++k) s.x[static_cast<std::size_t>(k)] = turn * s.start[static_cast<std::size_t>(k)];
+  const StateView end = s.step(s.engaged());
+  EXPECT_NEAR(s.cohesion.slip(end, 0).norm(), kRest * std::sin(0.01), 1e-12);
+}
+TEST(Cohesion, OpeningAlongALeaningOffsetIsNoSlip) {  // the vertex is beside an edge: the contact normal is not the triangle's
+  for (SlipFrame frame : {SlipFrame::turning, SlipFrame::fixed}) {
+    Stuck s;
+    s.cohesion.frame = frame;
+    const Vec3 n(0.6, 0, 0.8), foot(1e-3 / 2, 1e-3 / 2, 0);  // not across the edge from (0, 1, 0) mm to (1, 0, 0) mm in z alone
+    const Vec3 across = (n - n.dot(Vec3(1, -1, 0)) / 2 * Vec3(1, -1, 0)).normalized();
+    s.start[0] = foot + kRest * across;
+    s.x[0] = s.start[0] + 2e-5 * across;
+    const StateView end = s.step(s.engaged());
+    EXPECT_LT(s.cohesion.slip(end, 0).norm(), 1e-16);
+    EXPECT_NEAR(s.cohesion.energy(end, 0), 0.675 / (2 * kDhat) * 4e-10, 1e-15);
+  }
 }
 TEST(Cohesion, ConstantOpeningDebondsAsExplicitEulerSays) {  // checks.md part 3
   for (const auto& [opening, beta] : {std::pair{0.75, 0.50285132}, std::pair{1.0, 0.26362698}}) {

@@ -139,7 +139,7 @@ TEST(Friction, MatchesThePublishedStates) {
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(p.gradient.size());
     Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(p.gradient.size(), p.gradient.size());
     for (int i = 0; i < static_cast<int>(l.elements.size()); ++i) {
-      const int(&v)[4] = l.elements[static_cast<std::size_t>(i)].v;
+      const int(&v)[4] = l.elements[static_cast<std::size_t>(i)].lagged.v;
       energy += l.friction.energy(l.view, i);
       const VecN<12> g = l.friction.gradient(l.view, i);
       const MatN<12, 12> h = l.friction.hessian(l.view, i, HessianMode::exact);
