@@ -16,6 +16,24 @@ Json conditions_json(const RunSummary& summary) {
     conditions.push_back({{"name", c.name}, {"value", c.value}, {"required", c.required}, {"met", c.met}});
   return conditions;
 }
+Json adhesion_json(const Scene& scene, const AdhesivePair& pair) {
+  const auto name = [&](int material) {  // of what has it: an object of an interface has its own
+    for (const Strip& s : scene.strips)
+      if (s.material == material) return s.name;
+    for (const Body& b : scene.bodies)
+      if (b.material == material) return b.name;
+    return scene.materials[static_cast<std::size_t>(material)].name;
+  };
+  const Adhesion& a = pair.adhesion;
+  Json json = {{"between", {name(pair.a), name(pair.b)}}, {"law", to_text(a.law)}, {"faces", Json::array()}};
+  for (const Face first : {Face::backing, Face::sticky})
+    for (const Face second : {Face::backing, Face::sticky})
+      if (a.sticks[static_cast<int>(first)][static_cast<int>(second)]) json["faces"].push_back({to_text(first), to_text(second)});
+  if (a.law == AdhesionLaw::per_pair) add_fields(json, a.pair);
+  if (a.law == AdhesionLaw::per_area) add_fields(json, a.area);
+  if (a.law == AdhesionLaw::bond) add_fields(json, a.bond);
+  return json;
+}
 }  // namespace
 
 Json settings_json(const Setup& setup) {
@@ -43,6 +61,7 @@ Json settings_json(const Setup& setup) {
     json["interfaces"].push_back(
         {{"between", {scene.materials[static_cast<std::size_t>(pair.a)].name, scene.materials[static_cast<std::size_t>(pair.b)].name}},
          {"mu", pair.mu}});
+  for (const AdhesivePair& pair : scene.adhesives) json["adhesion"].push_back(adhesion_json(scene, pair));
   add_fields(json["solver"], setup.newton);
   add_fields(json["solver"], setup.linear);
   for_each_effect([&]<class T>(std::type_identity<T>) {

@@ -33,14 +33,11 @@ std::string reason(const cosim::RunInput& input, const PlanLine& line) {
 
 /// Stages of a step that are not effects, and parts of the testbed that this build leaves out.
 std::vector<Line> stages(const World& world) {
-  const auto on = [&](std::string_view effect) {
-    return std::any_of(world.plan.begin(), world.plan.end(), [&](const PlanLine& line) { return line.name == effect && line.on; });
-  };
   std::string remembering;
   for_each_effect([&]<class T>(std::type_identity<T>) {
-    if (Remembers<T> && on(T::name)) remembering += (remembering.empty() ? "" : ", ") + std::string(T::name);
+    if (Remembers<T> && world.is_on(T::name)) remembering += (remembering.empty() ? "" : ", ") + std::string(T::name);
   });
-  const bool contact = on(Barrier::name);
+  const bool contact = world.is_on(Barrier::name);
   const std::string why = contact ? "barrier" : "barrier is off";
   return {
       {"broad_phase", contact, why},

@@ -8,6 +8,7 @@
 #include "apps/tapesim/scene_input.hpp"
 #include "cosim/roll/roll_figures.hpp"
 #include "cosim/roll/settled_roll.hpp"
+#include "cosim/run/new_file.hpp"
 
 namespace tape::tapesim {
 namespace {
@@ -17,10 +18,17 @@ struct WindArguments {
   std::vector<std::string> overrides;
 };
 
+/// As YAML takes it whatever it holds.
+std::string quoted(const std::string& text) {
+  std::string out = "'";
+  for (char c : text) out += c == '\'' ? std::string("''") : std::string(1, c);
+  return out + "'";
+}
+
 /// The scene of a roll and nothing else; --set changes it as that of any scene.
 std::string scene_text(const WindArguments& a) {
   std::string text =
-      fmt::format("film: {}\nroll: {{turns: {}, sense: {}}}\n", std::filesystem::absolute(a.film).string(), a.turns, a.sense);
+      fmt::format("film: {}\nroll: {{turns: {}, sense: {}}}\n", quoted(std::filesystem::absolute(a.film).string()), a.turns, a.sense);
   text += "interfaces:\n";
   for (const char* to : {"tape", "hub"}) text += fmt::format("  - {{between: [tape.sticky, {}], law: per_pair, beta0: 1}}\n", to);
   return text;
@@ -47,6 +55,7 @@ int wind(const WindArguments& arguments) {
   cosim::RunInput input = read(arguments);
   if (!cosim::holds_together(input.setup.scene, 0))
     throw InputError("the tape of this roll does not adhere to itself: it would spring open");
+  cosim::TextFile{arguments.out};  // whether it can be written, before the work
   const cosim::SettledRoll roll = cosim::settle_roll(cosim::roll_alone(input.setup, 0), watched_settle());
   cosim::save_roll(arguments.out, roll);
   fmt::print("{}: at rest after {} steps, {:.2g} m/s\n", arguments.out, roll.report.steps, roll.report.speed);
@@ -54,10 +63,12 @@ int wind(const WindArguments& arguments) {
   const Winding& winding = *scene.strips[0].winding;
   const AxialMass tape = annulus_mass(winding, scene.films[0]);
   const Body& hub = scene.bodies[0];
+  const Real hub_inertia = hub.solid->second(0, 0) + hub.solid->second(1, 1);  // per density, about its axis z
   const std::map<std::string, Real> formula = {{"turns", winding.turns},
                                                {"wound_length_m", annulus_length(winding)},
                                                {"outer_radius_m", winding.outer_radius()},
-                                               {"roll_mass_kg", tape.mass + hub.density * hub.solid->volume}};
+                                               {"roll_mass_kg", tape.mass + hub.density * hub.solid->volume},
+                                               {"roll_inertia_kg_m2", tape.inertia + hub.density * hub_inertia}};
   for (const auto& [name, value] : cosim::roll_figures(roll.world, roll.state, 0)) {
     const auto expected = formula.find(name);
     fmt::print("  {} = {}{}\n", name, report::rounded(value),
@@ -73,7 +84,8 @@ void add_wind(CLI::App& app, Action& chosen) {
   command->add_option("FILM", arguments->film, "film (YAML), as data/tapes/vinyl_19mm.yaml")->required();
   command->add_option("--turns", arguments->turns, "turns of tape around the core")->required();
   command->add_option("--core", arguments->core, "core (YAML), with the keys of roll.core; default: that of 19-mm vinyl tape");
-  command->add_option("--sense", arguments->sense, "side to which the free end leaves the top")->check(CLI::IsMember({"left", "right"}));
+  command->add_option("--sense", arguments->sense, "side to which the free end leaves the top; an asset serves both, turned by half a turn")
+      ->check(CLI::IsMember({"left", "right"}));
   command->add_option("--out", arguments->out, "file of the asset")->required();
   command->add_option("--set", arguments->overrides, "set a key of the roll's scene, as roll.free_length=0.15 or interfaces.0.law=bond")
       ->allow_extra_args(false);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "tape/step/engagement.hpp"
+
 namespace cosim {
 namespace {
 /// A strip that is wound on a hub, in a state.
@@ -18,8 +20,9 @@ class Roll {
     EffectMemory memory = state_.memory;
     for_each_memory(memory, [&](const auto& pairs) {
       for (const auto& pair : pairs) {
-        const Index3& face = triangle(pair.triangle);
-        const int vertex = first_vertex(pair);
+        if (pair.engagement(adhesion_of(world_, pair)) == 0) continue;
+        const Index3& face = world_.assembly.triangles[static_cast<std::size_t>(pair.triangle)];
+        const int vertex = sticking_vertices(world_, pair)[0];
         if (part(vertex) && part(face[0])) last = std::max({last, along(vertex), start_of(face)});
       }
     });
@@ -54,12 +57,6 @@ class Roll {
 
  private:
   int first() const { return tape_.first_vertex; }
-  const Index3& triangle(int t) const { return world_.assembly.triangles[static_cast<std::size_t>(t)]; }
-  int first_vertex(const VertexTriangle& pair) const { return pair.vertex; }
-  int first_vertex(const SampleTriangle& pair) const {
-    const int n = params<CohesiveZone>(world_.setup.effects).samples;
-    return triangle(pair.sample / (n * n))[0];
-  }
   const Vec2& rest(int v) const { return world_.assembly.rest[static_cast<std::size_t>(v)]; }
   bool tape(int v) const { return v >= first() && v < first() + tape_.vertices; }
   bool part(int v) const {

@@ -60,7 +60,12 @@ std::filesystem::path roll_store() {
 
 void settle_rolls(Setup& setup, const RollOptions& options) {
   for (std::size_t s = 0; s < setup.scene.strips.size(); ++s) {
-    if (!holds_together(setup.scene, s)) continue;
+    if (!holds_together(setup.scene, s)) {
+      if (setup.scene.strips[s].winding && !options.asset.empty())
+        throw InputError("roll.asset = " + options.asset.string() +
+                         ": the tape of this roll does not adhere to itself, so that it starts as wound");
+      continue;
+    }
     const Setup alone = roll_alone(setup, s);
     if (!options.asset.empty()) {
       place_roll(load_roll(options.asset, alone), s, setup);

@@ -7,6 +7,7 @@
 
 #include "cosim/roll/roll_figures.hpp"
 #include "cosim/run/summary.hpp"
+#include "tape/model/motion.hpp"
 #include "tape/model/strip_mesh.hpp"
 
 namespace cosim {
@@ -119,13 +120,25 @@ FigureValues hub_travel(const World& world, const RunLog& log) {
   return {{"hub_travel_m", (log.end.bodies[hub].pose.position - log.start.bodies[hub].pose.position).norm()}};
 }
 
-/// How far the end of what adheres of the first strip, in its first interface, has moved along the strip.
-FigureValues boundary_advance(const World&, const RunLog& log) {
-  const AdhesionReport &first = log.rows.front().report.adhesion[0], &last = log.rows.back().report.adhesion[0];
-  return {{"boundary_advance_m", first.to - std::max<Real>(last.to, 0)}};
+/// Whether an interface holds a roll together: tape on tape, or tape on hub.
+bool inside_roll(const World& world, const AdhesivePair& pair) {
+  const Scene& scene = world.setup.scene;
+  const int tape = scene.strips[0].material, hub = scene.bodies[hub_of(world)].material;
+  return (pair.a == tape && (pair.b == tape || pair.b == hub)) || (pair.a == hub && pair.b == tape);
+}
+/// [m] end along the first strip of what adheres: in the interfaces of the roll if it is one, else in the first; 0 where nothing does.
+Real boundary(const World& world, const StepReport& report) {
+  const bool roll = first_roll(world) == 0;
+  Real end = 0;
+  for (std::size_t k = 0; k < report.adhesion.size(); ++k)
+    if (roll ? inside_roll(world, world.setup.scene.adhesives[k]) : k == 0) end = std::max(end, report.adhesion[k].to);
+  return end;
+}
+FigureValues boundary_advance(const World& world, const RunLog& log) {
+  return {{"boundary_advance_m", boundary(world, log.rows.front().report) - boundary(world, log.rows.back().report)}};
 }
 
-/// Force of the first grip that moves while the front of the first interface advances: from one cell on.
+/// Force of the first grip that moves, along its motion, while the front of the first interface advances: from one cell on.
 FigureValues peel_force(const World& world, const RunLog& log) {
   const Scene& scene = world.setup.scene;
   const std::size_t g = moving_grip(scene);
@@ -133,9 +146,11 @@ FigureValues peel_force(const World& world, const RunLog& log) {
   const Real cell = cell_length(strip.mesh, scene.films[static_cast<std::size_t>(strip.film)].width);
   const auto front = [](const StepRow& row) { return row.report.adhesion[0].to; };
   std::vector<Real> forces;
-  for (const StepRow& row : log.rows)
-    if (front(row) < front(log.rows.front()) - cell / 2 && row.report.adhesion[0].live > 0)
-      forces.push_back(row.report.grip_force[g].norm());
+  for (const StepRow& row : log.rows) {
+    const Vec3 moved = grip_offset(scene.grips[g], row.time) - grip_offset(scene.grips[g], row.time - row.report.dt);
+    if (moved.norm() > 0 && front(row) < front(log.rows.front()) - cell / 2 && row.report.adhesion[0].live > 0)
+      forces.push_back(row.report.grip_force[g].dot(moved.normalized()));
+  }
   if (forces.empty()) return {};
   const Distribution over_steps = distribution(forces);
   return {{"peel_force_median_N", over_steps.p50}, {"peel_force_mean_N", over_steps.mean}, {"peel_force_max_N", over_steps.max}};
@@ -148,8 +163,10 @@ constexpr Figure kFigures[] = {
     {"body_travel", "how far each body that is not static ends from where it started", body_travel},
     {"rest_speed", "largest speed of a vertex or body at the end", rest_speed},
     {"max_strain", "largest principal membrane strain of the run", max_strain},
-    {"peel_force", "force of the first grip that moves, while the first interface peels: median, mean, largest", peel_force},
-    {"boundary_advance", "tape that has come off: way of the end of the first interface along the first strip", boundary_advance},
+    {"peel_force", "force of the first grip that moves, along its motion, while the first interface peels: median, mean, largest",
+     peel_force},
+    {"boundary_advance", "tape that has come off: way of the end of the roll, or of the first interface, along the first strip",
+     boundary_advance},
     {"hub_range", "range of the hub's turning about its axis since its last grip was released", hub_range},
     {"hub_travel", "how far the centre of the hub ends from where it started", hub_travel},
     {"roll", "turns, length, outer radius, mass and inertia of what is wound at the end", roll},

@@ -186,11 +186,15 @@ class SceneReader {
     tape::Adhesion out{.law = law, .sticks = {}, .pair = {}, .area = {}, .bond = {}};
     if (law == tape::AdhesionLaw::bond || roll) {
       entry.read(out.bond);
-      if (out.bond.floor >= out.bond.reach) entry["floor"].fail("not below reach: no pair would ever bond");
+      if (out.bond.floor >= out.bond.reach) entry["bond_floor"].fail("not below bond_reach: no pair would ever bond");
     }
     if (law == tape::AdhesionLaw::per_pair || roll) {
       entry.read(out.pair);
       if (out.pair.beta0 == 0 && out.pair.gamma == 0) entry["gamma"].fail("0 with beta0 = 0: no pair would ever engage");
+      // a_n is (2 drop)^2 at most, and slip costs C_t: below W neither debonds anything.
+      const bool debonds = out.pair.ct > 0 || out.pair.work < 4 * out.pair.drop * out.pair.drop;
+      if (entry["eta"] && !debonds) entry["eta"].fail("never acts: with ct = 0 and this drop no opening exceeds work");
+      if (entry["slip"] && out.pair.ct == 0) entry["slip"].fail("never acts: ct = 0");
     }
     if (law == tape::AdhesionLaw::per_area) entry.read(out.area);
     return out;

@@ -41,6 +41,20 @@ Real wound_radius(const World& world, const State& state) {
       most = std::max(most, (hub.rotation.transpose() * (state.x[v] - hub.position)).head<2>().norm());
   return most;
 }
+/// Whether a roll comes to rest, as long, heavy and wide as the formulas of its spiral say.
+void expect_as_wound(const std::vector<std::string>& change) {
+  const cosim::SettledRoll roll = settled(change);
+  EXPECT_LE(roll.report.speed, 1e-7) << "0.1 um in a step of 1 s";
+  EXPECT_EQ(find_intersections(roll.world.surface, vertex_positions(roll.world, roll.state)).count, 0);
+  const Winding& w = *roll.world.setup.scene.strips[0].winding;
+  const std::map<std::string, Real> f = figures(roll);
+  EXPECT_NEAR(f.at("turns"), w.turns, 0.02) << "rows are 1/42 of a turn apart";
+  EXPECT_NEAR(f.at("wound_length_m"), annulus_length(w), 5e-3 * annulus_length(w) + w.cell) << "a row more or less";
+  EXPECT_NEAR(f.at("outer_radius_m"), w.outer_radius(), 5e-3 * w.outer_radius());
+  const AxialMass core = core_mass({}), tape = annulus_mass(w, roll.world.setup.scene.films[0]);
+  EXPECT_NEAR(f.at("roll_mass_kg"), core.mass + tape.mass, 5e-3 * (core.mass + tape.mass));
+  EXPECT_NEAR(f.at("roll_inertia_kg_m2"), core.inertia + tape.inertia, 5e-3 * (core.inertia + tape.inertia));
+}
 struct File {
   std::filesystem::path path = std::filesystem::temp_directory_path() / ("tape-roll-" + std::to_string(::getpid()) + ".h5");
   ~File() { std::filesystem::remove(path); }
@@ -48,23 +62,23 @@ struct File {
 }  // namespace
 
 TEST(SettledRoll, ComesToRestAsLongHeavyAndWideAsItWasWound) {
-  for (const std::vector<std::string>& change : {std::vector<std::string>{},
-                                                 {"roll.turns=8"},
-                                                 {"roll.sense=right"},
-                                                 {"interfaces.0.law=bond", "interfaces.1.law=bond"},
-                                                 {"strip.pattern=crossed"}}) {
-    const cosim::SettledRoll roll = settled(change);
-    EXPECT_LE(roll.report.speed, 1e-5);
-    EXPECT_EQ(find_intersections(roll.world.surface, vertex_positions(roll.world, roll.state)).count, 0);
-    const Winding& w = *roll.world.setup.scene.strips[0].winding;
-    const std::map<std::string, Real> f = figures(roll);
-    EXPECT_NEAR(f.at("turns"), w.turns, 0.02) << "rows are 1/42 of a turn apart";
-    EXPECT_NEAR(f.at("wound_length_m") / f.at("turns"), annulus_length(w) / w.turns, 5e-3 * annulus_length(w) / w.turns);
-    EXPECT_NEAR(f.at("outer_radius_m"), w.outer_radius(), 5e-3 * w.outer_radius());
-    const AxialMass core = core_mass({}), tape = annulus_mass(w, roll.world.setup.scene.films[0]);
-    EXPECT_NEAR(f.at("roll_mass_kg"), core.mass + tape.mass, 5e-3 * (core.mass + tape.mass));
-    EXPECT_NEAR(f.at("roll_inertia_kg_m2"), core.inertia + tape.inertia, 5e-3 * (core.inertia + tape.inertia));
+  for (const std::vector<std::string>& change :
+       {std::vector<std::string>{}, {"roll.turns=8"}, {"interfaces.0.law=bond", "interfaces.1.law=bond"}, {"strip.pattern=crossed"}})
+    expect_as_wound(change);
+}
+TEST(LongSettledRoll, OfManyTurnsIsAsLongHeavyAndWideAsItWasWound) {
+  for (const char* turns : {"16", "24", "32"}) expect_as_wound({std::string("roll.turns=") + turns});
+}
+TEST(SettledRoll, WoundTheOtherWayIsItsMirrorImage) {
+  const cosim::SettledRoll roll = settled();
+  std::vector<Vec3> tips;
+  for (const char* sense : {"left", "right"}) {
+    cosim::RunInput input = roll_input({std::string("roll.sense=") + sense});
+    cosim::place_roll(roll, 0, input.setup);
+    const World world = World::build(input.setup);
+    tips.push_back(State::start(world).x.back());
   }
+  EXPECT_LT((tips[0] - Vec3(-tips[1].x(), -tips[1].y(), tips[1].z())).norm(), 1e-12);
 }
 
 TEST(SettledRoll, StaysWoundWhereItAdheresAndSpringsOpenWhereItDoesNot) {
