@@ -4,6 +4,7 @@
 #include <csignal>
 #include <sstream>
 
+#include "cosim/scene/scene_file.hpp"
 #include "tests/apps/tapesim/program.hpp"
 
 using namespace tape::test;
@@ -196,4 +197,21 @@ TEST_F(Render, MakesStillsAndAVideoFromAnyCameraAndRefusesWhatIsNotThere) {
   EXPECT_EQ(with({"--camera", (folder / "none.yaml").string()}).exit_code, 2);
   EXPECT_EQ(with({"--camera", folder.file("bad.yaml", "eye: [0, 0, 0]\nfow: 3\n")}).exit_code, 2);
   EXPECT_EQ(tapesim({"render", (folder / "none").string()}).exit_code, 2);
+}
+
+TEST(Studies, ThatShipSetWhatTheirScenesHave) {
+  for (const auto& entry : std::filesystem::directory_iterator(TAPE_SOURCE_DIR "/data/studies")) {
+    const cosim::SceneFile study = cosim::SceneFile::load(entry.path());
+    const std::string scene = cosim::find_file(entry.path(), "scenes", study["scene"].text()).string();
+    std::vector<std::string> always;
+    for (const std::string& key : study["set"].keys()) always.push_back(key + "=" + study["set"][key].text());
+    for (const std::string& key : study["grid"].keys()) {
+      for (const std::string& value : study["grid"][key].texts()) {
+        std::vector<std::string> arguments{"check", scene, "--set", key + "=" + value};
+        for (const std::string& set : always) arguments.insert(arguments.end(), {"--set", set});
+        const Outcome outcome = tapesim(arguments);
+        EXPECT_EQ(outcome.exit_code, 0) << entry.path() << ", " << key << " = " << value << ": " << outcome.err;
+      }
+    }
+  }
 }
