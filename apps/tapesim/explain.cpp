@@ -47,7 +47,7 @@ std::vector<Line> stages(const World& world) {
       {"linear_solver", true, "solver.linear: " + to_text(world.setup.linear.linear)},
       {"line_search", true, "every step"},
       {"history", !remembering.empty(), remembering.empty() ? "no effect that is on remembers" : remembering},
-      {"reduction", false, "not in this build"},
+      {"reduction", !world.graphs.empty(), world.graphs.empty() ? "no model that is reduced" : "model"},
       {"cutting", false, "not in this build"},
       {"sleeping", false, "not in this build"},
       {"cosim", false, "not in this build"},

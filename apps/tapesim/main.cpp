@@ -14,7 +14,9 @@ namespace tape::tapesim {
 void add_scene(CLI::App& command, SceneArguments& arguments) {
   command.add_option("SCENE", arguments.scene, "scene file (YAML)")->required();
   command.add_option("--set", arguments.overrides, "set a key of the scene: path.to.key=value; may be repeated")->allow_extra_args(false);
-  command.add_option("--model", arguments.model, "how the interfaces inside a roll adhere: coh-f (cohesion) or bond-f (bonds)");
+  command.add_option("--model", arguments.model,
+                     "how the interfaces inside a roll adhere: coh-f (cohesion) or bond-f (bonds), all of the tape a shell; coh-r or "
+                     "bond-r: the wound part one rigid cluster");
 }
 
 namespace {

@@ -54,6 +54,7 @@ std::string settings_text() {
   add<PairCohesion>(table, "interfaces.N (per_pair)");
   add<AreaCohesion>(table, "interfaces.N (per_area)");
   add<BondLaw>(table, "interfaces.N (bond)");
+  add<ClusterParams>(table, "cluster");
   add<ContactParams>(table, "contact");
   add<NewtonParams>(table, "solver");
   add<LinearParams>(table, "solver");

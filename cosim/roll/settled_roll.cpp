@@ -90,6 +90,7 @@ Setup roll_alone(const Setup& setup, std::size_t strip) {
   scene.strips = {tape};
   scene.bodies = {hub};
   scene.grips.clear();
+  scene.model.reset();
   scene.gravity.setZero();
   scene.time = {.dt = kDt, .duration = 1};
   alone.newton = {.velocity_tol = kAccuracy * SettleParams{}.speed};

@@ -19,6 +19,8 @@ RunInput read_run(SceneFile scene) {
   if (const Reader figures = file["record"]["figures"]) input.figures = figures.texts();
   const Reader roll = file["roll"];
   input.settle_roll = roll["settle"].flag_or(true);
+  const std::optional<Model>& model = input.setup.scene.model;
+  if (!input.settle_roll && model && is_reduced(*model)) roll["settle"].fail("a reduced roll starts from one at rest");
   if (const Reader asset = roll["asset"]) {
     if (!input.settle_roll) asset.fail("of no use where settle is off");
     input.roll_asset = file.path().parent_path() / asset.text();

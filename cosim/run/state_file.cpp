@@ -86,7 +86,7 @@ RecordedMesh RecordedMesh::of(const World& world, std::string camera) {
         {scene.strips[s].name, material(scene.strips[s].material), a.strips[s].first_triangle, a.strips[s].triangles, true});
     mesh.strip_vertices += a.strips[s].vertices;
   }
-  for (std::size_t b = 0; b < a.bodies.size(); ++b)
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b)
     mesh.objects.push_back(
         {scene.bodies[b].name, material(scene.bodies[b].material), a.bodies[b].first_triangle, a.bodies[b].triangles, false});
   mesh.rest.assign(a.rest.begin(), a.rest.begin() + std::min<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(nv), std::ssize(a.rest)));
@@ -107,7 +107,7 @@ RecordedFrame RecordedFrame::of(const World& world, const State& state, std::vec
                       .bodies = {},
                       .contact_force = std::move(contact_force),
                       .engagement = vertex_engagement(world, state)};
-  for (const BodyState& body : state.bodies) frame.bodies.push_back(body.pose);
+  for (int b = 0; b < world.first_cluster(); ++b) frame.bodies.push_back(state.bodies[static_cast<std::size_t>(b)].pose);
   frame.contact_force.resize(static_cast<std::size_t>(world.assembly.surface_vertices), 0);
   return frame;
 }

@@ -25,6 +25,7 @@ class SceneReader {
       file_["scene"].fail("the name of a scene holds no slash: it names the folder of its runs");
     time();
     file_.read("contact", scene_.contact);
+    file_.read("cluster", scene_.cluster);
     scene_.gravity = file_["gravity"].vector_or(scene_.gravity, kPlace, "m/s^2");
     scene_.seed = file_["seed"].integer_or(scene_.seed, Range::non_negative());
     materials();
@@ -67,7 +68,7 @@ class SceneReader {
     for (tape::AdhesivePair& pair : scene_.adhesives) {
       if (!inside_roll(pair.a, pair.b)) continue;
       tape::AdhesionLaw& law = pair.adhesion.law;
-      if (*scene_.model == tape::Model::bond_f)
+      if (has_bonds(*scene_.model))
         law = tape::AdhesionLaw::bond;
       else if (law == tape::AdhesionLaw::bond)
         law = tape::AdhesionLaw::per_pair;

@@ -55,7 +55,20 @@ BodyMass body_mass(const Body& body, Vec3& centre) {
   return {density * unit.volume, density * unit.second};
 }
 
-void add_body(Assembly& a, const Body& body, int index) {
+/// First block of each body of the scene, -1 if it is fixed, then of the cluster of each reduced strip.
+std::vector<int> number_bodies(Assembly& a, const Scene& scene) {
+  std::vector<int> first;
+  const auto number = [&](bool moves) {
+    first.push_back(moves ? a.blocks : -1);
+    a.blocks += moves ? 2 : 0;
+  };
+  for (const Body& body : scene.bodies) number(body.motion != Motion::fixed);
+  for (const Strip& strip : scene.strips)
+    if (scene.reduces(strip)) number(true);
+  return first;
+}
+
+void add_body(Assembly& a, const Body& body, int index, int block) {
   BodyPart part;
   part.motion = body.motion;
   part.first_vertex = static_cast<int>(a.x.size());
@@ -63,10 +76,7 @@ void add_body(Assembly& a, const Body& body, int index) {
   part.first_triangle = static_cast<int>(a.triangles.size());
   part.triangles = static_cast<int>(body.mesh.triangles.size());
   if (body.motion == Motion::dynamic) part.mass = body_mass(body, part.mesh_offset);
-  if (body.motion != Motion::fixed) {
-    part.block = a.blocks;
-    a.blocks += 2;
-  }
+  part.block = block;
   part.start = {body.pose.rotation, apply(body.pose, part.mesh_offset)};
   part.velocity = body.velocity;
   part.angular_velocity = body.angular_velocity;
@@ -138,10 +148,25 @@ void choose_stiffness(Assembly& a, const Scene& scene) {
 }
 }  // namespace
 
+int Assembly::cluster_body(int strip) const {
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    if (bodies[b].cluster_of == strip) return static_cast<int>(b);
+  return -1;
+}
+
 Assembly assemble(const Scene& scene) {
   Assembly a;
+  const std::vector<int> block = number_bodies(a, scene);
   for (const Strip& strip : scene.strips) add_strip(a, scene, strip);
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) add_body(a, scene.bodies[b], static_cast<int>(b));
+  a.strip_vertices = static_cast<int>(a.x.size());
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) add_body(a, scene.bodies[b], static_cast<int>(b), block[b]);
+  for (std::size_t s = 0; s < scene.strips.size(); ++s) {
+    if (!scene.reduces(scene.strips[s])) continue;
+    BodyPart cluster;
+    cluster.motion = Motion::dynamic, cluster.cluster_of = static_cast<int>(s), cluster.block = block[a.bodies.size()];
+    cluster.first_vertex = static_cast<int>(a.x.size()), cluster.first_triangle = static_cast<int>(a.triangles.size());
+    a.bodies.push_back(cluster);
+  }
   a.surface_vertices = static_cast<int>(a.x.size());
   for (std::size_t b = 0; b < a.bodies.size(); ++b) {
     if (a.bodies[b].block < 0) continue;

@@ -2,17 +2,12 @@
 #include <string>
 #include <vector>
 
+#include "tape/bodies/body_mass.hpp"
 #include "tape/bodies/path.hpp"
 #include "tape/model/scene.hpp"
 #include "tape/model/strip_mesh.hpp"
 
 namespace tape {
-/// Mass of a rigid body about its centre of mass.
-struct BodyMass {
-  Real mass = 0;               ///< [kg]
-  Mat3 second = Mat3::Zero();  ///< [kg m^2] sum of m y y^T in the body's frame; the inertia tensor is tr(second) I - second
-};
-
 /// A strip in the world's arrays.
 struct StripPart {
   int film = 0;            ///< index into Scene::films
@@ -23,18 +18,20 @@ struct StripPart {
 /// A body in the world's arrays. Frame B of a body has its origin at the centre of mass.
 struct BodyPart {
   Motion motion = Motion::fixed;
+  int cluster_of = -1;  ///< strip whose wound part this is, -1: a body of the scene
   int first_vertex = 0, vertices = 0;
   int first_triangle = 0, triangles = 0;
   int block = -1;                                                 ///< first of its two blocks, -1 if fixed
   int centre = -1;                                                ///< vertex that marks the centre of mass, -1 if fixed
-  BodyMass mass;                                                  ///< zero unless dynamic
+  BodyMass mass;                                                  ///< zero unless dynamic; a cluster's follows its members
   Pose start;                                                     ///< X_WB
   Vec3 mesh_offset = Vec3::Zero();                                ///< [m] centre of mass in the frame of the mesh
   Vec3 velocity = Vec3::Zero(), angular_velocity = Vec3::Zero();  ///< [m/s], [rad/s] at the start
 };
 
-/// The scene as arrays. Vertices: those of the strips, of the bodies, then markers (points of bodies that no surface has).
-/// Unknowns are blocks of 3: one per strip vertex, two per body that is not fixed (translation, rotation).
+/// The scene as arrays. Vertices: those of the strips, of the bodies, then markers (points of bodies that no surface has). Bodies: those of
+/// the scene, then the clusters of reduced rolls, which as yet have no members.
+/// Unknowns are blocks of 3: two per body that is not fixed (translation, rotation), then one per strip vertex.
 struct Assembly {
   std::vector<Vec3> x;             ///< [nv] m, at the start
   std::vector<Vec3> v;             ///< [nv] m/s, at the start; strip vertices only
@@ -45,6 +42,7 @@ struct Assembly {
   std::vector<Index3> triangles;   ///< of strips, then of bodies
   std::vector<StripPart> strips;   ///< in the order of the scene
   std::vector<BodyPart> bodies;
+  int strip_vertices = 0;    ///< vertices below this are those of strips
   int surface_vertices = 0;  ///< vertices below this have a surface, those from it on are markers
   int blocks = 0;
 
@@ -54,6 +52,7 @@ struct Assembly {
     Real stiffness;  ///< [N/m] of each spring
   };
   std::vector<GripPart> grips;
+  int cluster_body(int strip) const;  ///< body that is the cluster of a strip, -1 if it is not reduced
 };
 
 /// @throws InputError naming the object if something cannot be built (open dynamic body, grip on an unknown object, ...)

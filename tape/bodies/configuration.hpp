@@ -52,14 +52,14 @@ struct BlockPoints {
 };
 }  // namespace coordinates
 
-/// What moves the vertices: constant for a run.
+/// What moves the vertices, as long as no cluster loses a member.
 class Coordinates {
  public:
-  explicit Coordinates(const Assembly& a) : owner_(a.owner), local_(a.local), blocks_(a.blocks) {
-    std::vector<int> first;
-    for (const BodyPart& b : a.bodies) first.push_back(b.block);
-    body_block_.upload(first);
-  }
+  /// @param owner       [nv]
+  /// @param local       [nv] m, in frame B
+  /// @param body_block  [bodies] first block of each, -1 if it is fixed
+  Coordinates(const std::vector<VertexOwner>& owner, const std::vector<Vec3>& local, const std::vector<int>& body_block, int blocks)
+      : owner_(owner), local_(local), body_block_(body_block), blocks_(blocks) {}
   int blocks() const { return blocks_; }
   Span<const VertexOwner> owner() const { return owner_.span(); }
   /// to = from moved by `step` times the direction [blocks] m and rad. Fixed things keep what `to` has.

@@ -12,16 +12,19 @@ struct Relocation {
   int slot[K];       ///< of each vertex: place of its (first) block in `block`, -1 if fixed
   bool rigid[K];     ///< the vertex has a rotation block too, at slot + 1
   Vec3 arm[K];       ///< [m] from the body's centre of mass, in the world
+  bool direct;       ///< vertex i is block i: nothing to relocate
 };
 
 template <int K>
 TAPE_HD Relocation<K> relocate(const Stencil<K>& stencil, const StateView& s) {
   Relocation<K> r;
+  r.direct = true;
   for (int i = 0; i < K; ++i) {
     const VertexOwner o = s.owner[stencil.id[i]];
     r.slot[i] = -1;
     r.rigid[i] = o.block >= 0 && o.body >= 0;
     r.arm[i] = r.rigid[i] ? Vec3(s.x[stencil.id[i]] - s.body[o.body].position) : Vec3(Vec3::Zero());
+    r.direct &= o.block >= 0 && o.body < 0;
     if (o.block < 0) continue;
     for (int a = 0; a < r.blocks && r.slot[i] < 0; ++a)
       if (r.block[a] == o.block) r.slot[i] = a;
@@ -30,6 +33,7 @@ TAPE_HD Relocation<K> relocate(const Stencil<K>& stencil, const StateView& s) {
     r.block[r.blocks++] = o.block;
     if (r.rigid[i]) r.block[r.blocks++] = o.block + 1;
   }
+  r.direct &= r.blocks == K;
   return r;
 }
 
@@ -55,6 +59,11 @@ TAPE_HD void relocate_gradient(const Relocation<K>& r, const VecN<3 * K>& g, Vec
 template <int K>
 TAPE_HD void relocate_hessian(const Relocation<K>& r, const VecN<3 * K>& g, const MatN<3 * K, 3 * K>& H, bool exact, Mat3* out) {
   const int m = r.blocks;
+  if (r.direct) {
+    for (int a = 0; a < K; ++a)
+      for (int b = a; b < K; ++b) out[pair_slot(a, b, K)] = H.template block<3, 3>(3 * a, 3 * b);
+    return;
+  }
   for (int p = 0; p < m * (m + 1) / 2; ++p) out[p] = Mat3::Zero();
   for (int i = 0; i < K; ++i) {
     for (int j = 0; j < K; ++j) {

@@ -1,4 +1,5 @@
 #pragma once
+#include "tape/bodies/body_mass.hpp"
 #include "tape/bodies/path.hpp"
 #include "tape/core/types.hpp"
 #include "tape/model/adhesion.hpp"
@@ -12,6 +13,8 @@ struct StateView {
   Span<const Vec3> x_start;         ///< [nv] m, at the start of the step
   Span<const Vec3> x_tilde;         ///< [nv] m, where inertia alone would take strip vertices (without gravity)
   Span<const VertexOwner> owner;    ///< [nv]
+  Span<const Real> mass;            ///< [nv] kg: of free strip vertices, and of whole bodies at their centres
+  Span<const BodyMass> body_mass;   ///< [bodies]
   Span<const Pose> body;            ///< [bodies] X_WB now
   Span<const Pose> body_target;     ///< [bodies] X_WB that inertia (dynamic) or the script (driven) asks for at the end of the step
   Span<const Vec3> grip_target;     ///< [springs] m, at the end of the step

@@ -93,6 +93,12 @@ TAPE_HD inline Lanes query_box(const Box& b, int first_id, bool fixed) {
   out.m[7] = fixed ? 0.0f : 1.0f;
   return out;
 }
+/// Meets no box either, as a query.
+TAPE_HD inline Lanes empty_query() {
+  Lanes out;
+  for (float& m : out.m) m = -FLT_MAX / 2;
+  return out;
+}
 TAPE_HD inline Lanes merged(const Lanes& a, const Lanes& b) {
   Lanes out;
   detail::LanesMap(out.m) = detail::ConstLanesMap(a.m).min(detail::ConstLanesMap(b.m));

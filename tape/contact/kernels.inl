@@ -17,7 +17,8 @@ struct SurfaceView {
   Span<const SurfaceTriangle> triangles;
   Span<const int> vertex_carrier, edge_carrier, triangle_carrier;  ///< body that carries the whole primitive, kFixed or kFree
   Span<const int> vertex_frame;                                    ///< [nv] frame from which pairs of things that follow it are seen
-  Span<const int> lead;  ///< [frames] vertex that the frame goes with, and turns with if a body carries it; none for the world
+  Span<const int> lead;     ///< [frames] vertex that the frame goes with, and turns with if a body carries it; none for the world
+  Span<const char> member;  ///< [nv] of a cluster
   int materials;
   Real dhat;   ///< [m] reach of vertex-triangle pairs beyond xi
   Real guard;  ///< [m] reach of the barrier of edge-edge pairs and between a rim and an open surface
@@ -25,6 +26,9 @@ struct SurfaceView {
   TAPE_HD Real xi(const SurfaceTriangle& t) const {
     return std::max(vertices[t.v[0]].xi, std::max(vertices[t.v[1]].xi, vertices[t.v[2]].xi));
   }
+  // Whether all of a primitive belongs to one cluster.
+  TAPE_HD bool triangle_sleeps(int t) const { return triangle_carrier[t] >= 0 && member[triangles[t].v[0]] != 0; }
+  TAPE_HD bool edge_sleeps(int e) const { return edge_carrier[e] >= 0 && member[edges[e].v[0]] != 0; }
   TAPE_HD int interface(int v, int w) const { return vertices[v].material * materials + vertices[w].material; }
   /// The pair of vertex v and triangle t with its constants.
   TAPE_HD ContactPair vertex_triangle(int v, int t) const {
@@ -80,12 +84,18 @@ struct MakeFrames {
     frames[k] = {now.position, lead.velocity, lead.spin, origin[k].rotation * now.rotation.transpose(), origin[k].position};
   }
 };
+/// Of a frame that goes with a cluster: its coordinates are those in which the members are at home.
+struct Home {
+  bool known = false;
+  Vec3 centre = Vec3::Zero();  ///< [m] where the cluster's centre of mass is there
+};
 struct StoreFrames {
   SurfaceView s;
   PathView paths;
+  Span<const Home> home;
   Span<Pose> origin;
   TAPE_HD void operator()(int k) const {
-    if (k != kWorld) origin[k] = paths.frame(s.lead[k]);
+    if (k != kWorld) origin[k] = home[k].known ? Pose{Mat3::Identity(), home[k].centre} : paths.frame(s.lead[k]);
   }
 };
 /// How vertices are looked at: each from its own frame, or all from the world.
@@ -107,17 +117,30 @@ struct Viewpoint {
 struct MakeTrust {
   Viewpoint view;
   Real margin;
+  Span<const int> list;
   Span<Trust> trust;
-  TAPE_HD void operator()(int v) const {
+  TAPE_HD void operator()(int k) const {
+    const int v = list[k];
     const Box path = view.box(v), box = view.still(v) ? path : inflated(path, margin);
     trust[v] = {box, box.centre(), box.radius()};
   }
 };
+struct MakeHomeTrust {
+  Span<const Vec3> home;
+  Span<const int> list;
+  Span<Trust> trust;
+  TAPE_HD void operator()(int k) const {
+    const Vec3& y = home[list[k]];
+    trust[list[k]] = {{y, y}, y, 0};
+  }
+};
 struct InTrust {
   Viewpoint own, world;
-  Span<const Trust> own_trust, world_trust;
-  TAPE_HD bool operator()(int v) const {
-    if (!world.still(v) && !world_trust[v].box.contains(world.box(v))) return false;
+  Span<const int> list;
+  Span<const Trust> own_trust, world_trust;  ///< the second is empty where nothing need be seen from the world
+  TAPE_HD bool operator()(int k) const {
+    const int v = list[k];
+    if (world_trust.size > 0 && !world.still(v) && !world_trust[v].box.contains(world.box(v))) return false;
     return own.frame(v) == kWorld || own.still(v) || own_trust[v].box.contains(own.box(v));
   }
 };
@@ -185,6 +208,13 @@ struct MakeTriangles {
   }
 };
 /// Boxes of the listed primitives, as a tree stores them.
+struct BoxVertices {
+  SurfaceView s;
+  Sight sight;
+  Span<const int> list;
+  Span<Lanes> boxes;
+  TAPE_HD void operator()(int k) const { boxes[k] = stored_box(sight.box(s, list[k]), list[k], s.vertex_carrier[list[k]] == kFixed); }
+};
 struct BoxEdges {
   SurfaceView s;
   Sight sight;
@@ -207,35 +237,45 @@ struct BoxTriangles {
 };
 
 /// Where pairs are looked for. What follows frames is seen from its own, what does not from the world; and the first is seen from the
-/// world too, for pairs with things that do not follow the same frame.
+/// world too, for pairs with things that do not follow the same frame. What sleeps in a cluster never pairs with what sleeps there.
 struct Trees {
-  TreeView own;        ///< of what follows a frame, as its frame sees it
+  TreeView own;        ///< of what follows a frame and is awake, as its frame sees it
+  TreeView asleep;     ///< of what sleeps, and of what did when the tree was planted, where it is at home
   TreeView rest;       ///< of what follows none
   TreeView followers;  ///< of what follows a frame, as the world sees it; empty if everything follows one frame, or nothing does
-  /// Calls f(id, whether it follows the same frame) for what meets the box of one that follows `frame`.
-  template <class F>
-  TAPE_HD void visit(int frame, const Lanes& own_box, const Lanes& world_box, F&& f) const {
-    if (frame != kWorld) own.visit(own_box, [&](int id) { f(id, true); });
+  /// Calls f(id, whether it follows the same frame) for what meets the boxes of one that follows `frame`.
+  /// @param sleeps  whether a primitive of this kind does, now
+  template <class Sleeps, class F>
+  TAPE_HD void visit(int frame, bool awake, const Lanes& own_box, const Lanes& asleep_box, const Lanes& world_box, const Sleeps& sleeps,
+                     F&& f) const {
+    if (frame != kWorld && awake) {
+      own.visit(own_box, [&](int id) { f(id, true); });
+      asleep.visit(asleep_box, [&](int id) {
+        if (sleeps(id)) f(id, true);
+      });
+    }
     rest.visit(world_box, [&](int id) { f(id, frame == kWorld); });
     followers.visit(world_box, [&](int id) { f(id, false); });
   }
 };
 
-/// Finds the triangles that a vertex may touch. Those that follow the same frame must be near as it sees them, all as the world sees them.
-struct VertexQuery {
+/// Whether primitives of a surface may touch: those that follow the same frame must be near as it sees them, all as the world sees them, if
+/// it looks.
+struct Nearness {
   SurfaceView s;
   Sight own, world;
-  Trees trees;
-  template <class F>
-  TAPE_HD void visit(int v, F&& f) const {
+  TAPE_HD const Sight& of(bool together, int frame) const { return together && frame != kWorld ? own : world; }
+  template <class Near>
+  TAPE_HD bool agree(bool together, int frame, const Near& near) const {
+    if (together && frame != kWorld && !near(own)) return false;
+    return world.trust.size == 0 || near(world);
+  }
+  TAPE_HD bool vertex_triangle(int v, int t, bool together) const {
     const int carrier = s.vertex_carrier[v], frame = s.vertex_frame[v];
-    const auto box = [&](const Sight& sight) { return query_box(sight.box(s, v), 0, carrier == kFixed); };
-    trees.visit(frame, box(own), box(world), [&](int t, bool together) {
-      const TriangleShape& b = world.triangles[t];
-      if (together != (frame == b.frame)) return;
-      const bool apart = v != b.v[0] && v != b.v[1] && v != b.v[2] && (carrier == kFree || carrier != b.carrier);
-      if (apart && (!together || frame == kWorld || near(v, own, own.triangles[t])) && near(v, world, b)) f(t);
-    });
+    const TriangleShape& b = of(together, frame).triangles[t];
+    if (together != (frame == b.frame) || v == b.v[0] || v == b.v[1] || v == b.v[2]) return false;
+    if (carrier != kFree && carrier == b.carrier) return false;
+    return agree(together, frame, [&](const Sight& sight) { return near(v, sight, sight.triangles[t]); });
   }
   TAPE_HD bool near(int v, const Sight& sight, const TriangleShape& b) const {
     const Vec3& centre = sight.trust[v].centre;
@@ -244,7 +284,43 @@ struct VertexQuery {
     const Vec3 x[4] = {centre, b.x[0], b.x[1], b.x[2]};
     return combine(closest_vertex_triangle(x).weight, x).squaredNorm() <= range * range;
   }
-  TAPE_HD ContactPair pair(int v, int t) const { return s.vertex_triangle(v, t); }
+};
+
+/// Finds the triangles that a vertex may touch.
+struct VertexQuery {
+  Nearness nearness;
+  Trees trees;
+  Span<const int> list;  ///< vertices
+  template <class F>
+  TAPE_HD void visit(int k, F&& f) const {
+    const SurfaceView& s = nearness.s;
+    const int v = list[k], frame = s.vertex_frame[v];
+    const auto box = [&](const Sight& sight, bool seen) {
+      return seen ? query_box(sight.box(s, v), 0, s.vertex_carrier[v] == kFixed) : empty_query();
+    };
+    const Lanes own_box = box(nearness.own, frame != kWorld), world_box = box(nearness.world, nearness.world.trust.size > 0);
+    const auto sleeps = [&](int t) { return s.triangle_sleeps(t); };
+    trees.visit(frame, s.member[v] == 0, own_box, own_box, world_box, sleeps, [&](int t, bool together) {
+      if (nearness.vertex_triangle(v, t, together)) f(t);
+    });
+  }
+  TAPE_HD ContactPair pair(int k, int t) const { return nearness.s.vertex_triangle(list[k], t); }
+};
+
+/// Finds the sleeping vertices that a triangle which is awake and follows their frame may touch.
+struct SleeperQuery {
+  Nearness nearness;
+  TreeView asleep;
+  Span<const int> list;  ///< triangles
+  template <class F>
+  TAPE_HD void visit(int k, F&& f) const {
+    const SurfaceView& s = nearness.s;
+    const int t = list[k];
+    asleep.visit(query_box(nearness.own.box(s, s.triangles[t]), 0, s.triangle_carrier[t] == kFixed), [&](int v) {
+      if (s.member[v] != 0 && nearness.vertex_triangle(v, t, true)) f(v);
+    });
+  }
+  TAPE_HD ContactPair pair(int k, int v) const { return nearness.s.vertex_triangle(v, list[k]); }
 };
 
 /// Finds the triangles that a sample may stick to, where everything is within the trust boxes.
@@ -262,7 +338,9 @@ struct SampleQuery {
     const Vec3 point = s.sample_triangle(sample, own, n).point(x);
     const Vec3 seen = frame == kWorld ? point : frames[frame].origin + frames[frame].turn * (point - frames[frame].centre);
     const auto box = [&](const Vec3& at) { return query_box(inflated(Box{at, at}, s.xi(a) + s.dhat / 2), 0, carrier == kFixed); };
-    trees.visit(frame, box(seen), box(point), [&](int t, bool together) {
+    const Lanes own_box = box(seen);
+    const auto sleeps = [&](int t) { return s.triangle_sleeps(t); };
+    trees.visit(frame, true, own_box, own_box, box(point), sleeps, [&](int t, bool together) {
       const SurfaceTriangle& b = s.triangles[t];
       if (together != (frame == s.vertex_frame[b.v[0]])) return;
       if (carrier != kFree && carrier == s.triangle_carrier[t]) return;
@@ -276,21 +354,28 @@ struct SampleQuery {
   }
 };
 
-/// Finds the edges of higher id that an edge may touch.
+/// Finds the edges of higher id that an edge may touch, and those that sleep whatever their id.
 struct EdgeQuery {
-  SurfaceView s;
-  Sight own, world;
+  Nearness nearness;
   Trees trees;
+  Span<const int> list;  ///< edges
   template <class F>
-  TAPE_HD void visit(int i, F&& f) const {
-    const EdgeShape& a = world.edges[i];
-    const auto box = [&](const Sight& sight) { return query_box(sight.box(s, s.edges[i]), i + 1, a.carrier == kFixed); };
-    trees.visit(a.frame, box(own), box(world), [&](int j, bool together) {
-      const EdgeShape& b = world.edges[j];
-      if (together != (a.frame == b.frame)) return;
-      const bool apart = a.v[0] != b.v[0] && a.v[0] != b.v[1] && a.v[1] != b.v[0] && a.v[1] != b.v[1];
-      if (!apart || (a.carrier != kFree && a.carrier == b.carrier)) return;
-      if ((!together || a.frame == kWorld || near(own.edges[i], own.edges[j])) && near(a, b)) f(j);
+  TAPE_HD void visit(int k, F&& f) const {
+    const SurfaceView& s = nearness.s;
+    const int i = list[k], carrier = s.edge_carrier[i], frame = s.vertex_frame[s.edges[i].v[0]];
+    const auto box = [&](const Sight& sight, int first, bool seen) {
+      return seen ? query_box(sight.box(s, s.edges[i]), first, carrier == kFixed) : empty_query();
+    };
+    const Lanes own_box = box(nearness.own, i + 1, frame != kWorld), asleep_box = box(nearness.own, 0, frame != kWorld);
+    const Lanes world_box = box(nearness.world, i + 1, nearness.world.trust.size > 0);
+    const auto sleeps = [&](int e) { return s.edge_sleeps(e); };
+    trees.visit(frame, !s.edge_sleeps(i), own_box, asleep_box, world_box, sleeps, [&](int j, bool together) {
+      const Sight& sight = nearness.of(together, frame);
+      const EdgeShape &a = sight.edges[i], &b = sight.edges[j];
+      if (together != (frame == b.frame)) return;
+      if (a.v[0] == b.v[0] || a.v[0] == b.v[1] || a.v[1] == b.v[0] || a.v[1] == b.v[1]) return;
+      if (carrier != kFree && carrier == b.carrier) return;
+      if (nearness.agree(together, frame, [&](const Sight& from) { return near(from.edges[i], from.edges[j]); })) f(j);
     });
   }
   TAPE_HD static bool near(const EdgeShape& a, const EdgeShape& b) {
@@ -306,7 +391,9 @@ struct EdgeQuery {
     const Real gap = w.dot(offset) - std::fabs(w.dot(b));  // times |w|
     return gap > 0 && gap * gap > range2 * w.squaredNorm();
   }
-  TAPE_HD ContactPair pair(int i, int j) const {
+  TAPE_HD ContactPair pair(int k, int other) const {
+    const SurfaceView& s = nearness.s;
+    const int i = std::min(list[k], other), j = std::max(list[k], other);
     const SurfaceEdge &a = s.edges[i], &b = s.edges[j];
     return {.v = {a.v[0], a.v[1], b.v[0], b.v[1]},
             .kind = PairKind::edge_edge,

@@ -23,6 +23,8 @@ class ContactSearch {
   /// @param dhat   [m] activation distance beyond xi
   /// @param guard  [m] that of edge-edge pairs and of the barrier at open rims, <= dhat
   ContactSearch(const SurfaceMesh& mesh, Real dhat, Real guard);
+  /// What carries each vertex from now on. Members of clusters are looked for where they are at home, in trees that are planted once.
+  void set_carriage(const SurfaceCarriage& carriage);
   /// Makes the candidates good for the whole of `paths`.
   /// @param margin  [m] by which the boxes of a rebuild exceed the paths: larger is reused longer, and finds more
   /// @return whether they had to be rebuilt
@@ -55,23 +57,27 @@ class ContactSearch {
     Buffer<detail::TriangleShape> triangles;
     detail::Sight view() const { return {trust.span(), edges.span(), triangles.span()}; }
   };
-  struct EdgesAndTriangles {
-    BoxTree edges, triangles;
+  struct Planted {
+    BoxTree vertices, edges, triangles;
+    int size = 0;  ///< primitives
   };
+  void resize(Seen& seen) const;
+  void look(const PathView& paths, Real margin);
   void find_frames(const PathView& paths);
   void make_shapes(const detail::Primitives& list, Seen& seen);
-  void plant(const detail::Primitives& list, const Seen& seen, EdgesAndTriangles& trees);
+  void plant(const detail::Primitives& list, const Seen& seen, bool vertices, Planted& trees);
   void drop_bonded();
   void join_components(const detail::SurfaceView& s);
 
+  SurfaceMesh mesh_;
   detail::SurfaceBuffers surface_;
   ObjectGroups groups_;
   Buffer<Pose> frame_origin_;  ///< [frames] at the rebuild
   Buffer<FramePath> frames_;   ///< [frames]
-  Seen own_, world_;           ///< each primitive from its own frame (shapes: of followers alone), all from the world
-  EdgesAndTriangles own_trees_, rest_trees_, follower_trees_;
+  Seen own_, world_;           ///< what follows a frame from there; all from the world, where that matters
+  Planted own_trees_, asleep_trees_, rest_trees_, follower_trees_;
   Buffer<Lanes> boxes_;
-  detail::Hits vertex_hits_, edge_hits_;
+  detail::Hits vertex_hits_, sleeper_hits_, edge_hits_;
   Buffer<VertexTriangle> bonded_names_;
   Buffer<ContactPair> bonded_, found_, pairs_;
   Buffer<int> kept_;       ///< [found + 1]

@@ -2,17 +2,45 @@
 
 namespace tape::TAPE_SIDE {
 inline ContactSearch::ContactSearch(const SurfaceMesh& mesh, Real dhat, Real guard)
-    : surface_(mesh, dhat, guard), groups_(mesh), component_(groups_.component_of_object), block_object_(groups_.object_of_block) {
+    : mesh_(mesh),
+      surface_(mesh, dhat, guard),
+      groups_(mesh),
+      component_(groups_.component_of_object),
+      block_object_(groups_.object_of_block) {
   TAPE_CHECK(mesh.owner.size() == mesh.vertices.size() && guard > 0 && guard <= dhat);
   TAPE_CHECK(std::max(mesh.edges.size(), mesh.triangles.size()) < (1u << 24));
+}
+
+inline void ContactSearch::set_carriage(const SurfaceCarriage& carriage) {
+  mesh_.owner = carriage.owner, mesh_.follows = carriage.follows;
+  surface_.set_carriage(mesh_, carriage.clusters);
+  groups_ = ObjectGroups(mesh_);
+  component_.upload(groups_.component_of_object);
+  block_object_.upload(groups_.object_of_block);
+  forget();
+  const int left = surface_.asleep.size(), planted = asleep_trees_.size;
+  if (left <= planted && 2 * left > planted) return;  // what has woken since stays in the trees and is passed over
+  resize(own_);
+  const Buffer<Vec3> home(carriage.home);
+  const Span<const int> vertices = surface_.asleep.vertices.span();
+  parallel_for(vertices.size, detail::MakeHomeTrust{home.span(), vertices, own_.trust.span()});
+  make_shapes(surface_.asleep, own_);
+  plant(surface_.asleep, own_, true, asleep_trees_);
+}
+
+inline void ContactSearch::resize(Seen& seen) const {
+  seen.trust.resize(surface_.vertices.size());
+  seen.edges.resize(surface_.edges.size());
+  seen.triangles.resize(surface_.triangles.size());
 }
 
 inline bool ContactSearch::update(const PathView& paths, Real margin) {
   if (built_) {
     find_frames(paths);
     const detail::SurfaceView s = surface_.view();
-    const detail::InTrust kernel{{s, paths, frames_.span()}, {s, paths, {}}, own_.trust.span(), world_.trust.span()};
-    if (reduce(s.vertices.size, true, kernel, Both{})) {
+    const Span<const int> vertices = surface_.in_view().vertices.span();
+    const detail::InTrust kernel{{s, paths, frames_.span()}, {s, paths, {}}, vertices, own_.trust.span(), world_.trust.span()};
+    if (reduce(vertices.size, true, kernel, Both{})) {
       ++report_.reuses;
       return false;
     }
@@ -28,7 +56,8 @@ inline void ContactSearch::find_frames(const PathView& paths) {
 
 inline detail::SampleQuery ContactSearch::samples(const PathView& paths) {
   find_frames(paths);
-  const detail::Trees trees{own_trees_.triangles.view(), rest_trees_.triangles.view(), follower_trees_.triangles.view()};
+  const detail::Trees trees{own_trees_.triangles.view(), asleep_trees_.triangles.view(), rest_trees_.triangles.view(),
+                            follower_trees_.triangles.view()};
   return {surface_.view(), trees, frames_.span(), paths.x};
 }
 
@@ -38,45 +67,68 @@ inline void ContactSearch::make_shapes(const detail::Primitives& list, Seen& see
   parallel_for(list.triangles.size(), detail::MakeTriangles{s, seen.trust.span(), list.triangles.span(), seen.triangles.span()});
 }
 
-inline void ContactSearch::plant(const detail::Primitives& list, const Seen& seen, EdgesAndTriangles& trees) {
+inline void ContactSearch::plant(const detail::Primitives& list, const Seen& seen, bool vertices, Planted& trees) {
   const detail::SurfaceView s = surface_.view();
+  trees.size = list.size();
   boxes_.resize(list.edges.size());
   parallel_for(boxes_.size(), detail::BoxEdges{s, seen.view(), list.edges.span(), boxes_.span()});
   trees.edges.build(boxes_.span(), list.edges.span());
   boxes_.resize(list.triangles.size());
   parallel_for(boxes_.size(), detail::BoxTriangles{s, seen.view(), list.triangles.span(), boxes_.span()});
   trees.triangles.build(boxes_.span(), list.triangles.span());
+  if (!vertices) return;
+  boxes_.resize(list.vertices.size());
+  parallel_for(boxes_.size(), detail::BoxVertices{s, seen.view(), list.vertices.span(), boxes_.span()});
+  trees.vertices.build(boxes_.span(), list.vertices.span());
+}
+
+/// Looks at everything from where it is.
+inline void ContactSearch::look(const PathView& paths, Real margin) {
+  const detail::SurfaceView s = surface_.view();
+  frame_origin_.resize(s.lead.size);
+  parallel_for(s.lead.size, detail::StoreFrames{s, paths, surface_.home.span(), frame_origin_.span()});
+  find_frames(paths);
+  const auto trust = [&](Seen& seen, const detail::Primitives& list, Span<const FramePath> frames) {
+    const Span<const int> vertices = list.vertices.span();
+    parallel_for(vertices.size, detail::MakeTrust{{s, paths, frames}, margin, vertices, seen.trust.span()});
+    make_shapes(list, seen);
+  };
+  resize(own_);
+  trust(own_, surface_.followers, frames_.span());
+  plant(surface_.followers, own_, false, own_trees_);
+  if (surface_.alone) {
+    world_ = {}, rest_trees_ = {}, follower_trees_ = {};
+    return;
+  }
+  resize(world_);
+  trust(world_, surface_.everything, {});
+  plant(surface_.rest, world_, false, rest_trees_);
+  plant(surface_.all_followers, world_, false, follower_trees_);
 }
 
 inline void ContactSearch::rebuild(const PathView& paths, Real margin) {
-  const detail::SurfaceView s = surface_.view();
-  frame_origin_.resize(s.lead.size);
-  parallel_for(s.lead.size, detail::StoreFrames{s, paths, frame_origin_.span()});
-  find_frames(paths);
-  for (Seen* seen : {&own_, &world_}) {
-    seen->trust.resize(s.vertices.size), seen->edges.resize(s.edges.size), seen->triangles.resize(s.triangles.size);
-    const Span<const FramePath> frames = seen == &own_ ? frames_.span() : Span<FramePath>{};
-    parallel_for(s.vertices.size, detail::MakeTrust{{s, paths, frames}, margin, seen->trust.span()});
-    make_shapes(surface_.followers, *seen);
-  }
-  make_shapes(surface_.rest, world_);
-  plant(surface_.followers, own_, own_trees_);
-  plant(surface_.rest, world_, rest_trees_);
-  if (surface_.rest.triangles.size() > 0 || s.lead.size > 2) plant(surface_.followers, world_, follower_trees_);
-  const auto trees = [&](BoxTree EdgesAndTriangles::*kind) {
-    return detail::Trees{(own_trees_.*kind).view(), (rest_trees_.*kind).view(), (follower_trees_.*kind).view()};
+  look(paths, margin);
+  const auto trees = [&](BoxTree Planted::*kind) {
+    return detail::Trees{(own_trees_.*kind).view(), (asleep_trees_.*kind).view(), (rest_trees_.*kind).view(),
+                         (follower_trees_.*kind).view()};
   };
-  const detail::VertexQuery vertices{s, own_.view(), world_.view(), trees(&EdgesAndTriangles::triangles)};
-  const detail::EdgeQuery edges{s, own_.view(), world_.view(), trees(&EdgesAndTriangles::edges)};
-  report_.vertex_triangle = vertex_hits_.count(s.vertices.size, vertices);
-  report_.edge_edge = edge_hits_.count(s.edges.size, edges);
+  const detail::Primitives& seen = surface_.in_view();
+  const detail::Nearness nearness{surface_.view(), own_.view(), world_.view()};
+  const detail::VertexQuery vertices{nearness, trees(&Planted::triangles), seen.vertices.span()};
+  const detail::SleeperQuery sleepers{nearness, asleep_trees_.vertices.view(), surface_.followers.triangles.span()};
+  const detail::EdgeQuery edges{nearness, trees(&Planted::edges), seen.edges.span()};
+  const int of_vertices = vertex_hits_.count(vertices.list.size, vertices);
+  const int of_sleepers = sleeper_hits_.count(asleep_trees_.size > 0 ? sleepers.list.size : 0, sleepers);
+  report_.vertex_triangle = of_vertices + of_sleepers;
+  report_.edge_edge = edge_hits_.count(edges.list.size, edges);
   Buffer<ContactPair>& all = bonded_.size() > 0 ? found_ : pairs_;
   all.resize(report_.vertex_triangle + report_.edge_edge);
-  const Span<ContactPair> pairs = all.span();
-  vertex_hits_.emit(vertices, Span<ContactPair>{pairs.data, report_.vertex_triangle});
-  edge_hits_.emit(edges, Span<ContactPair>{pairs.data + report_.vertex_triangle, report_.edge_edge});
+  ContactPair* const pairs = all.span().data;
+  vertex_hits_.emit(vertices, Span<ContactPair>{pairs, of_vertices});
+  sleeper_hits_.emit(sleepers, Span<ContactPair>{pairs + of_vertices, of_sleepers});
+  edge_hits_.emit(edges, Span<ContactPair>{pairs + report_.vertex_triangle, report_.edge_edge});
   if (bonded_.size() > 0) drop_bonded();
-  join_components(s);
+  join_components(surface_.view());
   built_ = true;
   ++report_.rebuilds;
 }

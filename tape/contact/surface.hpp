@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,14 @@ struct SurfaceTriangle {
   Real mean_area;  ///< [m^2] of the triangles of its object, at rest
   Sharing sharing;
   bool open;  ///< its object has a rim
+};
+
+/// What carries the vertices of a surface, as long as no cluster loses a member.
+struct SurfaceCarriage {
+  std::vector<VertexOwner> owner;  ///< [nv]
+  std::vector<int> follows;        ///< [objects] as SurfaceMesh::follows
+  std::vector<Vec3> home;          ///< [nv] m, where members of clusters are in a frame of their cluster that never changes
+  std::map<int, Vec3> clusters;    ///< bodies that are clusters: members follow them for good; [m] their centre of mass in that frame
 };
 
 /// Contact surface of the world: strips and bodies alike. Two primitives never form a pair when they share a vertex, when

@@ -25,7 +25,8 @@ struct Carriers {
 /// the rest, the world's. On the host.
 struct Frames {
   std::vector<int> vertex, lead = {-1};
-  Frames(const SurfaceMesh& mesh, const Carriers& carriers) {
+  std::vector<Home> home = {{}};
+  Frames(const SurfaceMesh& mesh, const Carriers& carriers, const std::map<int, Vec3>& clusters) {
     std::vector<int> first(mesh.objects.size(), -1), of_object(mesh.objects.size(), kWorld);
     std::vector<bool> free(mesh.objects.size(), true);
     std::map<int, int> carried;  // a vertex of each body
@@ -40,31 +41,42 @@ struct Frames {
       const auto body = carried.find(mesh.follows[o]);
       if (body != carried.end()) {
         const auto [known, fresh] = of_body.try_emplace(body->first, static_cast<int>(lead.size()));
-        if (fresh) lead.push_back(body->second);
+        if (fresh) {
+          const auto cluster = clusters.find(body->first);
+          lead.push_back(body->second);
+          home.push_back(cluster == clusters.end() ? Home{} : Home{true, cluster->second});
+        }
         of_object[o] = known->second;
       } else if (free[o] && first[o] >= 0) {
         of_object[o] = static_cast<int>(lead.size());
         lead.push_back(first[o]);
+        home.push_back({});
       }
     }
     for (const SurfaceVertex& v : mesh.vertices) vertex.push_back(of_object[static_cast<std::size_t>(v.object)]);
   }
 };
 
-/// Ids of primitives by kind.
+/// Ids of primitives by kind, those that are `in`.
 struct Primitives {
-  Buffer<int> edges, triangles;
+  Buffer<int> vertices, edges, triangles;
   Primitives() = default;
-  /// Those whose first vertex is `in`.
+  /// @param in  of a vertex, and of the vertices of an edge or triangle
   template <class In>
   Primitives(const SurfaceMesh& mesh, const In& in) {
-    edges.upload(ids(mesh.edges, in)), triangles.upload(ids(mesh.triangles, in));
+    std::vector<int> ids;
+    for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v)
+      if (in(std::span<const int>(&v, 1))) ids.push_back(v);
+    vertices.upload(ids), edges.upload(list(mesh.edges, in)), triangles.upload(list(mesh.triangles, in));
   }
+  int size() const { return vertices.size() + edges.size() + triangles.size(); }
+
+ private:
   template <class T, class In>
-  static std::vector<int> ids(const std::vector<T>& all, const In& in) {
+  static std::vector<int> list(const std::vector<T>& all, const In& in) {
     std::vector<int> out;
     for (std::size_t i = 0; i < all.size(); ++i)
-      if (in(all[i].v[0])) out.push_back(static_cast<int>(i));
+      if (in(std::span<const int>(all[i].v))) out.push_back(static_cast<int>(i));
     return out;
   }
 };
@@ -73,13 +85,35 @@ struct Primitives {
 struct SurfaceBuffers {
   SurfaceBuffers(const SurfaceMesh& mesh, Real dhat_, Real guard_)
       : vertices(mesh.vertices), edges(mesh.edges), triangles(mesh.triangles), materials(mesh.materials), dhat(dhat_), guard(guard_) {
+    set_carriage(mesh, {});
+  }
+  /// Sorts the primitives by what they follow and whether they sleep: whether all their vertices are members of a cluster.
+  void set_carriage(const SurfaceMesh& mesh, const std::map<int, Vec3>& clusters) {
     const Carriers carriers(mesh);
     vertex_carrier.upload(carriers.vertex), edge_carrier.upload(carriers.edge), triangle_carrier.upload(carriers.triangle);
-    const Frames frames(mesh, carriers);
-    vertex_frame.upload(frames.vertex), lead.upload(frames.lead);
-    followers = Primitives(mesh, [&](int v) { return frames.vertex[static_cast<std::size_t>(v)] != kWorld; });
-    rest = Primitives(mesh, [&](int v) { return frames.vertex[static_cast<std::size_t>(v)] == kWorld; });
+    const Frames frames(mesh, carriers, clusters);
+    vertex_frame.upload(frames.vertex), lead.upload(frames.lead), home.upload(frames.home);
+    std::vector<char> sleeps;
+    for (int carrier : carriers.vertex) sleeps.push_back(clusters.contains(carrier) ? 1 : 0);
+    member.upload(sleeps);
+    const auto follows = [&](int v) { return frames.vertex[static_cast<std::size_t>(v)] != kWorld; };
+    const auto is_asleep = [&](std::span<const int> v) {
+      return sleeps[static_cast<std::size_t>(v[0])] != 0 && carriers.common(v) != kFree;
+    };
+    const auto pick = [&](bool following, bool sleeping) {
+      return Primitives(
+          mesh, [&, following, sleeping](std::span<const int> v) { return follows(v[0]) == following && is_asleep(v) == sleeping; });
+    };
+    followers = pick(true, false), asleep = pick(true, true), rest = pick(false, false);
+    TAPE_CHECK(pick(false, true).size() == 0);
+    alone = rest.size() == 0 && frames.lead.size() == 2;
+    everything = {}, all_followers = {};
+    if (alone) return;
+    everything = Primitives(mesh, [](std::span<const int>) { return true; });
+    all_followers = Primitives(mesh, [&](std::span<const int> v) { return follows(v[0]); });
   }
+  /// What looks for pairs: all that is not asleep, and what sleeps where something may come near that does not follow its frame.
+  const Primitives& in_view() const { return alone ? followers : everything; }
   SurfaceView view() const {
     return {vertices.span(),
             edges.span(),
@@ -89,6 +123,7 @@ struct SurfaceBuffers {
             triangle_carrier.span(),
             vertex_frame.span(),
             lead.span(),
+            member.span(),
             materials,
             dhat,
             guard};
@@ -97,7 +132,11 @@ struct SurfaceBuffers {
   Buffer<SurfaceEdge> edges;
   Buffer<SurfaceTriangle> triangles;
   Buffer<int> vertex_carrier, edge_carrier, triangle_carrier, vertex_frame, lead;
-  Primitives followers, rest;  ///< of frames, and those that follow none
+  Buffer<Home> home;                     ///< [frames]
+  Buffer<char> member;                   ///< [nv]
+  Primitives followers, asleep, rest;    ///< of frames, awake; of frames, asleep; and those that follow none
+  Primitives everything, all_followers;  ///< all, and those of frames; empty if alone
+  bool alone = false;                    ///< everything follows one frame: nothing need be seen from the world
   int materials;
   Real dhat, guard;
 };

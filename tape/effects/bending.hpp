@@ -22,7 +22,7 @@ struct BendingParams {
 /// A D/2 |S|^2 of the curvature S that the three angles stand for.
 struct Bending {
   static constexpr std::string_view name = "bending";
-  static constexpr bool free_vertices = true;
+  static constexpr bool sleeps = true;
   using Params = BendingParams;
   struct Element {
     int v[6];      ///< the triangle, then the apex of the neighbour across the edge opposite of each vertex; v[k] at a free edge

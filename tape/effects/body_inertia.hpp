@@ -40,34 +40,40 @@ struct BodyInertia {
   using Params = NoParams;
   struct Element {
     int body, block;
-    BodyQuadratic mass;
   };
   Span<const Element> elements;
 
   static std::string needed(const Scene& scene, const Params&) {
     for (const Body& body : scene.bodies)
       if (body.motion == Motion::dynamic) return "bodies." + body.name + ".motion";
+    for (const Strip& strip : scene.strips)
+      if (scene.reduces(strip)) return "model";
     return "";
   }
   static BodyInertia build(const Scene&, const Assembly& assembly, const Params&, std::vector<Element>& elements) {
     for (std::size_t b = 0; b < assembly.bodies.size(); ++b) {
       const BodyPart& part = assembly.bodies[b];
-      if (part.motion == Motion::dynamic) elements.push_back({static_cast<int>(b), part.block, {part.mass.mass, part.mass.second}});
+      if (part.motion == Motion::dynamic) elements.push_back({static_cast<int>(b), part.block});
     }
     return {};
   }
   TAPE_HD Stencil<2> stencil(int i) const { return {{elements[i].block, elements[i].block + 1}}; }
   TAPE_HD Real energy(const StateView& s, int i) const {
     const Element& e = elements[i];
-    return e.mass.energy(s.body[e.body], s.body_target[e.body]) / (s.dt * s.dt);
+    return quadratic(s, e).energy(s.body[e.body], s.body_target[e.body]) / (s.dt * s.dt);
   }
   TAPE_HD VecN<6> gradient(const StateView& s, int i) const {
     const Element& e = elements[i];
-    return e.mass.gradient(s.body[e.body], s.body_target[e.body]) / (s.dt * s.dt);
+    return quadratic(s, e).gradient(s.body[e.body], s.body_target[e.body]) / (s.dt * s.dt);
   }
   TAPE_HD MatN<6, 6> hessian(const StateView& s, int i, HessianMode mode) const {
     const Element& e = elements[i];
-    return e.mass.hessian(s.body[e.body], s.body_target[e.body], mode) / (s.dt * s.dt);
+    return quadratic(s, e).hessian(s.body[e.body], s.body_target[e.body], mode) / (s.dt * s.dt);
+  }
+
+ private:
+  TAPE_HD static BodyQuadratic quadratic(const StateView& s, const Element& e) {
+    return {s.body_mass[e.body].mass, s.body_mass[e.body].second};
   }
 };
 static_assert(Effect<BodyInertia>);

@@ -5,23 +5,24 @@ namespace tape {
 /// Uniform gravity g [m/s^2]:  E = -m g.x  for each strip vertex and each body's centre of mass.
 struct Gravity {
   static constexpr std::string_view name = "gravity";
+  static constexpr bool sleeps = true;
   using Params = NoParams;
   struct Element {
     int v;
-    Real mass;  ///< [kg]
   };
   Span<const Element> elements;
   Vec3 g;  ///< [m/s^2]
 
   static std::string needed(const Scene& scene, const Params&) { return scene.gravity.isZero() ? "" : "gravity"; }
   static Gravity build(const Scene& scene, const Assembly& assembly, const Params&, std::vector<Element>& elements) {
-    for (int v = 0; v < static_cast<int>(assembly.mass.size()); ++v)
-      if (const Real m = assembly.mass[static_cast<std::size_t>(v)]; m > 0) elements.push_back({v, m});
+    for (int v = 0; v < assembly.strip_vertices; ++v) elements.push_back({v});
+    for (const BodyPart& body : assembly.bodies)
+      if (body.motion == Motion::dynamic) elements.push_back({body.centre});
     return {{}, scene.gravity};
   }
   TAPE_HD Stencil<1> stencil(int i) const { return {{elements[i].v}}; }
-  TAPE_HD Real energy(const StateView& s, int i) const { return -elements[i].mass * g.dot(s.x[elements[i].v]); }
-  TAPE_HD Vec3 gradient(const StateView&, int i) const { return -elements[i].mass * g; }
+  TAPE_HD Real energy(const StateView& s, int i) const { return -s.mass[elements[i].v] * g.dot(s.x[elements[i].v]); }
+  TAPE_HD Vec3 gradient(const StateView& s, int i) const { return -s.mass[elements[i].v] * g; }
   TAPE_HD Mat3 hessian(const StateView&, int, HessianMode) const { return Mat3::Zero(); }
 };
 static_assert(Effect<Gravity>);

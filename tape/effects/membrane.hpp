@@ -8,7 +8,7 @@ namespace tape {
 ///   E = A h (mu |G|^2 + lambda/2 tr^2 G),  mu = E/(2 (1 + nu)), lambda = E nu/(1 - nu^2),  stress S = 2 mu G + lambda tr(G) I.
 struct Membrane {
   static constexpr std::string_view name = "membrane";
-  static constexpr bool free_vertices = true;
+  static constexpr bool sleeps = true;
   using Params = NoParams;
   struct Element {
     int v[3];

@@ -29,6 +29,8 @@ Adhesion Scene::adhesion(int first, int second) const {
   return {};
 }
 
+bool Scene::reduces(const Strip& strip) const { return strip.winding && model && is_reduced(*model); }
+
 bool Scene::uses(AdhesionLaw law) const {
   return std::ranges::any_of(adhesives, [&](const AdhesivePair& p) { return p.adhesion.law == law; });
 }

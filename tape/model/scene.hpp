@@ -7,6 +7,7 @@
 
 #include "tape/core/settings.hpp"
 #include "tape/model/adhesion.hpp"
+#include "tape/model/cluster_params.hpp"
 #include "tape/model/film.hpp"
 #include "tape/model/mass_properties.hpp"
 #include "tape/model/triangle_mesh.hpp"
@@ -82,9 +83,12 @@ struct Strip {
   std::vector<Vec3> settled = {};  ///< [vertices] m, in the frame of `pose`: where a roll came to rest; empty: as the winding says
 };
 
-/// How the interfaces inside a roll adhere: the paper's full-shell models with cohesion or bonds.
-enum class Model { coh_f, bond_f };
-constexpr auto enum_names(Model) { return std::array<std::string_view, 2>{"coh-f", "bond-f"}; }
+/// How the interfaces inside a roll adhere, by cohesion or bonds, and whether all of its tape is a shell (f: full) or its wound part one
+/// rigid cluster (r: reduced): the four models of the paper.
+enum class Model { coh_f, bond_f, coh_r, bond_r };
+constexpr auto enum_names(Model) { return std::array<std::string_view, 4>{"coh-f", "bond-f", "coh-r", "bond-r"}; }
+constexpr bool has_bonds(Model m) { return m == Model::bond_f || m == Model::bond_r; }
+constexpr bool is_reduced(Model m) { return m == Model::coh_r || m == Model::bond_r; }
 
 /// Prescribed pose at a time; motion.hpp says how a body moves between two of them.
 struct Waypoint {
@@ -156,6 +160,7 @@ struct Scene {
   Vec3 gravity = Vec3(0, 0, -9.81);  ///< [m/s^2]
   int seed = 1;
   std::optional<Model> model = {};  ///< of the rolls, over what their interfaces say
+  ClusterParams cluster;            ///< of reduced rolls
   std::vector<Film> films;
   std::vector<Strip> strips;
   std::vector<Body> bodies;
@@ -168,5 +173,6 @@ struct Scene {
   Real mu(int a, int b) const;                     ///< friction of two materials
   Adhesion adhesion(int first, int second) const;  ///< of two materials
   bool uses(AdhesionLaw law) const;                ///< whether an interface does
+  bool reduces(const Strip& strip) const;          ///< whether its wound part is a rigid cluster
 };
 }  // namespace tape

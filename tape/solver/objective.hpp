@@ -28,6 +28,10 @@ inline constexpr bool free_vertices = requires {
   T::free_vertices;
 };
 template <class T>
+inline constexpr bool sleeps = requires {
+  T::sleeps;
+};
+template <class T>
 inline constexpr bool on_blocks = requires {
   T::on_blocks;
 };
@@ -72,7 +76,10 @@ struct SlotGroupBuffers {
 class Objective {
  public:
   /// @param on  by effect, in the order of the list
-  Objective(const Scene& scene, const EffectParams& effects, const Assembly& assembly, const std::vector<bool>& on, const StateView& start);
+  Objective(const Scene& scene, const EffectParams& effects, const Assembly& assembly, const std::vector<bool>& on);
+  /// Finds which elements are awake, with their blocks. Needed first, and when clusters lose members.
+  /// @param strip_vertices  vertices below this are those of strips: one that a body carries is a member of a cluster
+  void set_carriage(int blocks, int strip_vertices, const StateView& s);
   /// Pairs of the contact search, for effects that work on them.
   void set_candidates(Span<const ContactPair> candidates);
   /// Fixes what lags for a step, at s.x == s.x_start.
@@ -113,7 +120,7 @@ class Objective {
   void set_pattern(const StateView& s, bool contact);
   void fill(const StateView& s, HessianMode mode, bool contact);
 
-  int blocks_ = 0;
+  int blocks_ = 0, strip_vertices_ = 0;
   Terms terms_;
   SlotGroupBuffers fixed_, contact_;
   Buffer<Vec3> gradient_;

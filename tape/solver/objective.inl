@@ -14,8 +14,9 @@ template <class T>
 struct ElementEnergy {
   T term;
   StateView s;
+  Selection select;
   TAPE_HD EnergySum operator()(int i) const {
-    const Real e = term.energy(s, i);
+    const Real e = term.energy(s, select[i]);
     return {e, std::fabs(e)};
   }
 };
@@ -23,9 +24,12 @@ struct AddEnergies {
   TAPE_HD EnergySum operator()(const EnergySum& a, const EnergySum& b) const { return {a.sum + b.sum, a.scale + b.scale}; }
 };
 
+/// Of all elements that may contribute.
 template <class T>
-EnergySum energy_of(const T& term, const StateView& s) {
-  return reduce(term.elements.size, EnergySum{}, ElementEnergy<T>{term, s}, AddEnergies{});
+EnergySum energy_of(const Term<T>& term, const StateView& s) {
+  const bool all = is_contact<T>;
+  const Selection select{all ? Span<const int>{} : term.active.span()};
+  return reduce(all ? term.view.elements.size : term.count, EnergySum{}, ElementEnergy<T>{term.view, s, select}, AddEnergies{});
 }
 
 template <class T>
@@ -34,6 +38,19 @@ struct FirstNonFinite {
   StateView s;
   int count;
   TAPE_HD int operator()(int i) const { return std::isfinite(term.energy(s, i)) ? count : i; }
+};
+/// Which elements of an effect that sleeps are awake.
+template <class T>
+struct FlagAwake {
+  T term;
+  int strip_vertices;
+  Span<const VertexOwner> owner;
+  Span<int> flag;  // [count + 1], the last stays 0
+  TAPE_HD void operator()(int i) const {
+    flag[i] = 0;
+    if (i + 1 == flag.size) return;
+    for (int v : term.stencil(i).id) flag[i] |= v >= strip_vertices || owner[v].body < 0 ? 1 : 0;
+  }
 };
 /// Of the derivatives, where the elements of an effect have written them.
 struct FirstNonFiniteSlot {
@@ -160,9 +177,7 @@ struct FillSlots {
 };
 }  // namespace objective
 
-inline Objective::Objective(const Scene& scene, const EffectParams& effects, const Assembly& assembly, const std::vector<bool>& on,
-                            const StateView& start)
-    : blocks_(assembly.blocks) {
+inline Objective::Objective(const Scene& scene, const EffectParams& effects, const Assembly& assembly, const std::vector<bool>& on) {
   std::size_t k = 0;
   const auto build = [&]<class T>(Term<T>& term) {
     term.on = on[k++];
@@ -174,8 +189,12 @@ inline Objective::Objective(const Scene& scene, const EffectParams& effects, con
     term.count = term.elements.size();
   };
   std::apply([&](auto&... term) { (build(term), ...); }, terms_);
+}
+
+inline void Objective::set_carriage(int blocks, int strip_vertices, const StateView& s) {
+  blocks_ = blocks, strip_vertices_ = strip_vertices;
   gradient_.resize(blocks_);
-  set_pattern(start, false);
+  set_pattern(s, false);
   matrix_.set_fixed_pattern(blocks_, fixed_.keys.span());
 }
 
@@ -206,7 +225,7 @@ inline EnergySum Objective::energy(const StateView& s) {
   for_each([&]<class T>(std::string_view, Term<T>& term) {
     if (term.view.elements.size == 0) return;
     const Stopwatch watch(term.ms);
-    const EnergySum e = objective::energy_of(term.view, s);
+    const EnergySum e = objective::energy_of(term, s);
     total = {total.sum + e.sum, total.scale + e.scale};
   });
   return total;
@@ -255,6 +274,13 @@ inline void Objective::set_pattern(const StateView& s, bool contact) {
       term.count = exclusive_scan(scratch_.span());
       term.active.resize(term.count);
       parallel_for(n, objective::Compact{scratch_.span(), term.active.span()});
+    }
+    if constexpr (sleeps<T>) {
+      scratch_.resize(n + 1);
+      parallel_for(n + 1, objective::FlagAwake<T>{term.view, strip_vertices_, s.owner, scratch_.span()});
+      term.count = exclusive_scan(scratch_.span());
+      term.active.resize(term.count < n ? term.count : 0);
+      if (term.count < n) parallel_for(n, objective::Compact{scratch_.span(), term.active.span()});
     }
     term.offsets.gradient.resize(term.count + 1);
     term.offsets.hessian.resize(term.count + 1);

@@ -169,7 +169,7 @@ inline Real Objective::accuracy_to_judge(const StateView& s) {
 inline Real Objective::adhesive_energy(const StateView& s) {
   Real sum = 0;
   for_each([&]<class T>(std::string_view, Term<T>& term) {
-    if constexpr (Remembers<T>) sum += objective::energy_of(term.view, s).sum;
+    if constexpr (Remembers<T>) sum += objective::energy_of(term, s).sum;
   });
   return sum;
 }
@@ -184,7 +184,7 @@ inline Real Objective::contact_energy(const StateView& s, const std::vector<Vert
     if constexpr (requires { T::contact_pairs; }) {
       T view = term.view;
       view.elements = contact.span();
-      sum += objective::energy_of(view, s).sum;
+      sum += reduce(contact.size(), EnergySum{}, objective::ElementEnergy<T>{view, s, {}}, objective::AddEnergies{}).sum;
     }
   });
   return sum;

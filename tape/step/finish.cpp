@@ -34,17 +34,16 @@ void finish_body(const BodyMass& mass, const Pose& pose, const Pose& target, Rea
   body.pose = {orthonormal(pose.rotation), pose.position};
 }
 
-void finish_step(const World& world, const State& before, const State& after, Real dt, StepReport& report) {
-  const Assembly& a = world.assembly;
+void finish_step(const World& world, const Carriage& carriage, const State& before, const State& after, Real dt, StepReport& report) {
   report.kinetic = 0;
   for (std::size_t v = 0; v < after.x.size(); ++v) {
-    report.kinetic += a.mass[v] * after.v[v].squaredNorm() / 2;
-    report.momentum += a.mass[v] * after.v[v];
-    report.angular_momentum += a.mass[v] * after.x[v].cross(after.v[v]);
+    report.kinetic += carriage.mass[v] * after.v[v].squaredNorm() / 2;
+    report.momentum += carriage.mass[v] * after.v[v];
+    report.angular_momentum += carriage.mass[v] * after.x[v].cross(after.v[v]);
   }
   for (std::size_t b = 0; b < after.bodies.size(); ++b) {
     const BodyState& body = after.bodies[b];
-    const BodyMass& mass = a.bodies[b].mass;
+    const BodyMass& mass = carriage.body_mass[b];
     report.body_pose.push_back(body.pose);
     report.body_force.push_back(mass.mass * ((body.velocity - before.bodies[b].velocity) / dt - world.setup.scene.gravity));
     if (!(mass.mass > 0)) continue;

@@ -30,10 +30,30 @@ void visit_state(State& s, const Visit& visit) {
   for (Vec3& p : s.grip_base) visit(p);
   visit(s.step);
   for (int& c : s.grip_closed) visit(c);
-  for_each_memory(s.memory, [&](auto& pairs) {
-    pairs.resize(visit.count(pairs.size()));
-    for (auto& pair : pairs) pair.visit(visit);
-  });
+  const auto visit_memory = [&](EffectMemory& memory) {
+    for_each_memory(memory, [&](auto& pairs) {
+      pairs.resize(visit.count(pairs.size()));
+      for (auto& pair : pairs) pair.visit(visit);
+    });
+  };
+  visit_memory(s.memory);
+  for (Cluster& c : s.clusters) {
+    std::vector<Vec3> local = *c.local;
+    std::vector<int> distance = *c.distance, released(c.released.begin(), c.released.end());
+    EffectMemory asleep = *c.asleep;
+    for (Vec3& y : local) visit(y);
+    for (int& d : distance) visit(d);
+    released.resize(visit.count(released.size()));
+    for (int& v : released) visit(v);
+    visit(c.centre), visit(c.mass.mass), visit(c.mass.second);
+    visit_memory(asleep);
+    c = {std::make_shared<const std::vector<Vec3>>(local),
+         std::make_shared<const std::vector<int>>(distance),
+         {released.begin(), released.end()},
+         c.centre,
+         c.mass,
+         std::make_shared<const EffectMemory>(asleep)};
+  }
 }
 
 struct Write {
@@ -180,7 +200,9 @@ State load_snapshot(const std::string& file, const World& world) {
     refuse("its arrays do not fit");
   }
   try {
-    std::apply([&](const auto&... memory) { (check_memory(world, memory), ...); }, state.memory);
+    const auto check = [&](const auto&... memory) { (check_memory(world, memory), ...); };
+    std::apply(check, state.memory);
+    for (const Cluster& c : state.clusters) std::apply(check, *c.asleep);
     check_start(vertex_positions(world, state), world.surface, world.setup.scene.dhat(), pairs_out_of_contact(state.memory));
   } catch (const InputError& e) {
     refuse(e.what());

@@ -12,6 +12,7 @@
 #include "tape/solver/objective.inl"
 #include "tape/solver/remember.inl"
 #include "tape/step/finish.hpp"
+#include "tape/step/reduce.hpp"
 #include "tape/step/stepper.hpp"
 
 namespace tape::TAPE_SIDE {
@@ -48,7 +49,8 @@ template <class T>
 struct Strain {
   T term;
   StateView s;
-  TAPE_HD Real operator()(int i) const { return term.strain(s, i); }
+  objective::Selection select;
+  TAPE_HD Real operator()(int i) const { return term.strain(s, select[i]); }
 };
 /// What element i adds to the report of one interface.
 template <class T>
@@ -86,8 +88,7 @@ struct Fill {
 /// One step of the solver on one side.
 class SideStepper final : public Stepper {
  public:
-  explicit SideStepper(const World& world)
-      : world_(world), coordinates_(world.assembly), linear_(world.setup.linear, layout(world.assembly)) {
+  explicit SideStepper(const World& world) : world_(world), linear_(world.setup.linear) {
     const State state = State::start(world);
     std::vector<Real> mu;
     std::vector<Adhesion> adhesion;
@@ -106,16 +107,14 @@ class SideStepper final : public Stepper {
     for (Real m : world.assembly.mass) moving_mass_ += m;
     const Real dhat = world.setup.scene.dhat();
     if (world.is_on(Barrier::name)) search_.emplace(world.surface, dhat, world.setup.scene.contact.guard * dhat);
-    begin(state, world.setup.scene.time.dt);
     std::vector<bool> on;
     for (const PlanLine& line : world.plan) on.push_back(line.on);
-    objective_.emplace(world.setup.scene, world.setup.effects, world.assembly, on, view(now_));
+    objective_.emplace(world.setup.scene, world.setup.effects, world.assembly, on);
     objective_->for_each([&]<class T>(std::string_view, Term<T>&) {
       if (Remembers<T>) normals_.emplace(world.surface);
     });
-    direction_.resize(coordinates_.blocks());
-    right_.resize(coordinates_.blocks());
-    points_.resize(coordinates_.blocks());
+    begin(state, world.setup.scene.time.dt);
+    take_up(state);
   }
 
   StepReport step(State& state) override {
@@ -131,11 +130,13 @@ class SideStepper final : public Stepper {
       if (report.ok) {
         next.time = end;
         ++next.step;
-        finish_step(world_, state, next, dt, report);
+        finish_step(world_, carriage_, state, next, dt, report);
+        collect(report);
+        advance_fronts(world_, carriage_, state, next);
         state = std::move(next);
       }
+      if (!report.ok) collect(report);
     }
-    collect(report);
     return report;
   }
 
@@ -145,13 +146,34 @@ class SideStepper final : public Stepper {
   }
 
  private:
-  static SystemLayout layout(const Assembly& a) {
+  /// Makes everything that depends on what carries the vertices, as it is in a state.
+  void take_up(const State& state) {
+    carriage_ = carry(world_, state);
+    fronts_ = fronts(state);
+    std::vector<int> body_block;
+    for (const BodyPart& b : world_.assembly.bodies) body_block.push_back(b.block);
+    coordinates_.emplace(carriage_.owner, carriage_.local, body_block, carriage_.blocks);
+    mass_.upload(carriage_.mass);
+    body_mass_.upload(carriage_.body_mass);
     SystemLayout layout;
-    for (const StripPart& s : a.strips)
-      layout.strips.push_back({a.owner[static_cast<std::size_t>(s.first_vertex)].block, s.vertices, s.columns});
-    for (const BodyPart& b : a.bodies)
-      if (b.block >= 0) layout.body_blocks.push_back(b.block);
-    return layout;
+    for (std::size_t s = 0; s < carriage_.strips.size(); ++s)
+      layout.strips.push_back({carriage_.strips[s].block, carriage_.strips[s].blocks, world_.assembly.strips[s].columns});
+    for (int block : body_block)
+      if (block >= 0) layout.body_blocks.push_back(block);
+    linear_.set_layout(std::move(layout));
+    if (search_) search_->set_carriage(surface_carriage(world_, state, carriage_));
+    for (Buffer<Vec3>* blocks : {&direction_, &right_, &points_}) blocks->resize(carriage_.blocks);
+    objective_->set_carriage(carriage_.blocks, world_.assembly.strip_vertices, view(now_));
+  }
+  /// Which members a state's clusters have.
+  using Fronts = std::vector<std::shared_ptr<const std::vector<int>>>;
+  static Fronts fronts(const State& state) {
+    Fronts out;
+    for (const Cluster& c : state.clusters) out.push_back(c.distance);
+    return out;
+  }
+  static bool same(const Fronts& a, const Fronts& b) {
+    return std::ranges::equal(a, b, [](const auto& p, const auto& q) { return p == q || *p == *q; });
   }
 
   /// Brings the state to this side and finds what is prescribed for its end.
@@ -181,7 +203,9 @@ class SideStepper final : public Stepper {
             .x = at.x.span(),
             .x_start = start_.x.span(),
             .x_tilde = x_tilde_.span(),
-            .owner = coordinates_.owner(),
+            .owner = coordinates_->owner(),
+            .mass = mass_.span(),
+            .body_mass = body_mass_.span(),
             .body = at.body.span(),
             .body_target = body_target_.span(),
             .grip_target = grip_target_.span(),
@@ -196,6 +220,7 @@ class SideStepper final : public Stepper {
     State next = state;
     close_grips(world_, next);
     begin(next, dt);
+    if (!same(fronts(next), fronts_)) take_up(next);
     if (newton(next, report)) {
       read_back(next, dt);
       renew_memory(next, dt, report);
@@ -219,8 +244,7 @@ class SideStepper final : public Stepper {
     }
     const std::vector<Pose> pose = now_.body.download(), target = body_target_.download();
     for (std::size_t b = 0; b < state.bodies.size(); ++b)
-      if (world_.assembly.bodies[b].motion != Motion::fixed)
-        finish_body(world_.assembly.bodies[b].mass, pose[b], target[b], dt, state.bodies[b]);
+      if (world_.assembly.bodies[b].motion != Motion::fixed) finish_body(carriage_.body_mass[b], pose[b], target[b], dt, state.bodies[b]);
     state.time += dt;
   }
 
@@ -229,7 +253,7 @@ class SideStepper final : public Stepper {
     if (!search_) return;
     const Stopwatch watch(search_ms_);
     const Real margin = world_.setup.scene.contact.margin * world_.setup.scene.dhat();
-    if (search_->update(coordinates_.paths(now_, direction), margin)) ++searches_;
+    if (search_->update(coordinates_->paths(now_, direction), margin)) ++searches_;
     objective_->set_candidates(search_->candidates());
   }
 
@@ -267,7 +291,7 @@ class SideStepper final : public Stepper {
     StateView s = view(now_);
     s.dt = dt;
     s.normal = normals_->at(s.x);
-    return objective_->remember(s, search_->samples(coordinates_.paths(now_, direction_.span())));
+    return objective_->remember(s, search_->samples(coordinates_->paths(now_, direction_.span())));
   }
   /// Candidates and elements of a step that starts at now_ with this memory.
   void recall(const EffectMemory& memory) {
@@ -301,7 +325,7 @@ class SideStepper final : public Stepper {
       ++report.newton;
       if (!find_direction(report)) return false;
       const Real slope = -reduce(direction_.size(), 0.0, Dot{right_.span(), direction_.span()}, Plus{});
-      const Real moved = reduce(now_.x.size(), 0.0, stepping::Travel{coordinates_.paths(now_, direction_.span())}, Larger{});
+      const Real moved = reduce(now_.x.size(), 0.0, stepping::Travel{coordinates_->paths(now_, direction_.span())}, Larger{});
       if (!std::isfinite(moved) || !std::isfinite(slope))
         return fail(report, "the Newton direction is not finite" + in_brackets(objective_->first_non_finite_derivative()));
       if (moved <= kPositionRoundOff * extent_) return converged_to();  // no update is left that positions could hold
@@ -351,7 +375,7 @@ class SideStepper final : public Stepper {
         parallel_for(right_.size(), stepping::Negate{objective_->gradient(), right_.span()});
       }
       const Stopwatch watch(linear_ms_);
-      coordinates_.block_points(now_, points_.span());
+      coordinates_->block_points(now_, points_.span());
       const LinearReport solved = linear_.solve(objective_->matrix(), points_.span(), right_.span(), direction_.span());
       report.linear_solver = solved.solver;
       report.linear_iterations += solved.iterations;
@@ -369,13 +393,13 @@ class SideStepper final : public Stepper {
   /// Moves now_ along direction_: limited by CCD for each connected component, then halved until the energy falls.
   bool line_search(Real slope, StepReport& report, bool& at_round_off) {
     if (search_) {
-      const Real way = reduce(now_.x.size(), 0.0, stepping::Way{coordinates_.paths(now_, direction_.span())}, Larger{});
+      const Real way = reduce(now_.x.size(), 0.0, stepping::Way{coordinates_->paths(now_, direction_.span())}, Larger{});
       if (const Real longest = world_.setup.scene.contact.max_move; way > longest)
         parallel_for(direction_.size(), stepping::Scale{direction_.span(), longest / way});
       update_candidates(direction_.span());
       if (search_->candidates().size + search_->bonded().size > 0) {
         const Stopwatch watch(ccd_ms_);
-        search_->limit_steps(coordinates_.paths(now_, direction_.span()), {.eta = world_.setup.scene.contact.ccd_gap});
+        search_->limit_steps(coordinates_->paths(now_, direction_.span()), {.eta = world_.setup.scene.contact.ccd_gap});
         search_->scale(direction_.span());
       }
     }
@@ -384,7 +408,7 @@ class SideStepper final : public Stepper {
     at_round_off = -slope <= round_off;
     Real step = 1;
     for (int h = 0; h <= world_.setup.newton.max_line_search; ++h, step /= 2) {
-      coordinates_.move(now_, direction_.span(), step, trial_);
+      coordinates_->move(now_, direction_.span(), step, trial_);
       const EnergySum after = objective_->energy(view(trial_));
       if (after.sum < energy_.sum || (-slope * step <= round_off && after.sum <= energy_.sum + round_off)) {
         std::swap(now_, trial_);
@@ -418,7 +442,7 @@ class SideStepper final : public Stepper {
     objective_->for_each([&]<class T>(std::string_view name, Term<T>& term) {
       EffectReport line{.name = std::string(name), .ms = term.ms, .energy = 0, .elements = term.count};
       const bool stored = !requires { T::incremental; };
-      if (stored) line.energy = objective::energy_of(term.view, s).sum;
+      if (stored) line.energy = objective::energy_of(term, s).sum;
       if constexpr (requires { T::contact_pairs; }) {
         const Span<const ContactPair> pairs = search_->candidates();
         line.energy += regained_;
@@ -427,7 +451,7 @@ class SideStepper final : public Stepper {
         report.min_gap = std::fmin(smallest_gap(pairs, s.x).gap, smallest_gap(search_->bonded(), s.x).gap);
       }
       if constexpr (requires { term.view.strain(s, 0); })
-        report.max_strain = reduce(term.view.elements.size, 0.0, stepping::Strain<T>{term.view, s}, Larger{});
+        report.max_strain = reduce(term.count, 0.0, stepping::Strain<T>{term.view, s, {term.active.span()}}, Larger{});
       report.effects.push_back(line);
     });
     if (search_) report.stages = {{"broad_phase", search_ms_}, {"ccd", ccd_ms_}};
@@ -443,7 +467,9 @@ class SideStepper final : public Stepper {
   }
 
   const World& world_;
-  Coordinates coordinates_;
+  Carriage carriage_;
+  Fronts fronts_;  // that the carriage is of
+  std::optional<Coordinates> coordinates_;
   std::optional<ContactSearch> search_;   // where things can touch
   std::optional<VertexNormals> normals_;  // where something adheres
   std::vector<VertexTriangle> replaced_;  // pairs that are out of contact in this step
@@ -453,7 +479,8 @@ class SideStepper final : public Stepper {
   Configuration start_, now_, trial_;
   Buffer<Vec3> x_tilde_, grip_target_, direction_, right_, points_;
   Buffer<Pose> body_target_;
-  Buffer<Real> grip_stiffness_, mu_, along_;
+  Buffer<Real> grip_stiffness_, mu_, along_, mass_;
+  Buffer<BodyMass> body_mass_;
   Buffer<Adhesion> adhesion_;
   static constexpr Real kPositionRoundOff = 1e-15, kEnergyRoundOff = 4e-15;
   HessianMode mode_ = HessianMode::exact;       // of the last direction

@@ -8,6 +8,7 @@
 #include "tape/core/hash.hpp"
 #include "tape/math/rotation.hpp"
 #include "tape/model/motion.hpp"
+#include "tape/step/reduce.hpp"
 #include "tape/step/roll_gaps.hpp"
 
 namespace tape {
@@ -59,6 +60,8 @@ World World::build(Setup setup) {
   world.assembly = assemble(setup.scene);
   world.surface = make_surface(setup.scene, world.assembly);
   world.setup = std::move(setup);
+  for (const BodyPart& body : world.assembly.bodies)
+    if (body.cluster_of >= 0) world.graphs.emplace_back(world.assembly, world.assembly.strips[static_cast<std::size_t>(body.cluster_of)]);
   check_rolls(world.setup.scene, world.assembly, world.surface, world.assembly.x);
   check_start(world.assembly.x, world.surface, world.setup.scene.dhat());
   check_nothing_inside(world.assembly.x, world.surface);
@@ -76,7 +79,12 @@ State State::start(const World& world) {
     state.x.insert(state.x.end(), world.assembly.x.begin() + first, world.assembly.x.begin() + last);
     state.v.insert(state.v.end(), world.assembly.v.begin() + first, world.assembly.v.begin() + last);
   }
+  state.memory = world.setup.memory;
   for (const BodyPart& body : world.assembly.bodies) {
+    if (body.cluster_of >= 0) {
+      form_cluster(world, state);
+      continue;
+    }
     const Mat3& R = body.start.rotation;
     state.bodies.push_back({body.start, body.velocity, R * inertia_tensor(body.mass.second) * R.transpose() * body.angular_velocity});
   }
@@ -84,7 +92,6 @@ State State::start(const World& world) {
     for (int v : grip.vertices) state.grip_base.push_back(world.assembly.x[static_cast<std::size_t>(v)]);
     state.grip_closed.push_back(0);
   }
-  state.memory = world.setup.memory;
   return state;
 }
 
@@ -102,11 +109,24 @@ std::string State::hash() const {
   }
   hash.add(grip_base.data(), grip_base.size() * sizeof(Vec3));
   hash.add(grip_closed.data(), grip_closed.size() * sizeof(int));
-  EffectMemory copy = memory;
-  for_each_memory(copy, [&](auto& pairs) {
-    for (auto& pair : pairs) pair.visit([&](auto& value) { hash.add(&value, sizeof value); });
-  });
+  const auto add_memory = [&](EffectMemory copy) {
+    for_each_memory(copy, [&](auto& pairs) {
+      for (auto& pair : pairs) pair.visit([&](auto& value) { hash.add(&value, sizeof value); });
+    });
+  };
+  add_memory(memory);
+  for (const Cluster& c : clusters) {
+    hash.add(c.local->data(), c.local->size() * sizeof(Vec3));
+    hash.add(c.distance->data(), c.distance->size() * sizeof(int));
+    for (int vertex : c.released) hash.add(&vertex, sizeof vertex);
+    add_memory(*c.asleep);
+  }
   return hash.text();
+}
+
+const BodyMass& body_mass(const World& world, const State& state, std::size_t body) {
+  const auto first = static_cast<std::size_t>(world.first_cluster());
+  return body < first ? world.assembly.bodies[body].mass : state.clusters[body - first].mass;
 }
 
 std::vector<Vec3> vertex_positions(const World& world, const State& state) {
@@ -145,7 +165,7 @@ Drive Drive::at(const World& world, const State& state, Real dt) {
       drive.grip_stiffness.push_back(closed ? part.stiffness : 0);
     }
   }
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     const BodyPart& part = world.assembly.bodies[b];
     const BodyState& body = state.bodies[b];
     Pose target = body.pose;
@@ -153,7 +173,8 @@ Drive Drive::at(const World& world, const State& state, Real dt) {
       const Pose mesh = driven_pose(scene.bodies[b], end);
       target = {mesh.rotation, apply(mesh, part.mesh_offset)};
     } else if (part.motion == Motion::dynamic) {
-      target = {free_flight(body.pose.rotation, body.angular_momentum, part.mass.second, dt), body.pose.position + dt * body.velocity};
+      target = {free_flight(body.pose.rotation, body.angular_momentum, body_mass(world, state, b).second, dt),
+                body.pose.position + dt * body.velocity};
     }
     drive.body_target.push_back(target);
   }

@@ -9,6 +9,7 @@
 #include "tape/contact/surface.hpp"
 #include "tape/effects/effects.hpp"
 #include "tape/model/scene.hpp"
+#include "tape/reduction/carriage.hpp"
 #include "tape/solver/linear_params.hpp"
 #include "tape/solver/params.hpp"
 
@@ -35,11 +36,13 @@ struct World {
   Setup setup;
   Assembly assembly;
   SurfaceMesh surface;
-  std::vector<PlanLine> plan;  ///< in the order of the list of effects
+  std::vector<StripGraph> graphs;  ///< [clusters] of their strips
+  std::vector<PlanLine> plan;      ///< in the order of the list of effects
 
   /// Checks settings and initial state.  @throws InputError saying what is wrong and where
   static World build(Setup setup);
   bool is_on(std::string_view effect) const;
+  int first_cluster() const { return static_cast<int>(setup.scene.bodies.size()); }  ///< body that is the first cluster
 };
 
 struct BodyState {
@@ -53,10 +56,11 @@ struct State {
   int step = 0;
   Real time = 0;                  ///< [s]
   std::vector<Vec3> x, v;         ///< [strip vertices] m, m/s
-  std::vector<BodyState> bodies;  ///< [bodies]
+  std::vector<BodyState> bodies;  ///< [bodies] with the clusters at the end
   std::vector<Vec3> grip_base;    ///< [springs] m, where the target of each spring was when its grip closed
   std::vector<int> grip_closed;   ///< [grips] 1 once it has closed
-  EffectMemory memory;            ///< of pairs that adhere
+  EffectMemory memory;            ///< of pairs that adhere, but for those asleep in clusters
+  std::vector<Cluster> clusters;  ///< of reduced rolls, in the order of the bodies that they are; members keep the x of the last step
 
   static State start(const World& world);
   /// 64-bit FNV-1a of all bits above, as 16 hexadecimal digits.
@@ -73,6 +77,8 @@ struct Drive {
   std::vector<Pose> body_target;     ///< [bodies] X_WB; dynamic bodies: where their inertia takes them
   static Drive at(const World& world, const State& state, Real dt);
 };
+/// Mass of a body; of a cluster, as it is now.
+const BodyMass& body_mass(const World& world, const State& state, std::size_t body);
 /// Closes the grips whose time has come: each spring's target starts where its vertex is now.
 void close_grips(const World& world, State& state);
 

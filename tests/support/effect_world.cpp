@@ -52,6 +52,7 @@ void EffectWorld::add_strip() {
     }
   }
   part.triangles = static_cast<int>(assembly.triangles.size());
+  assembly.strip_vertices = part.vertices;
   assembly.strips.push_back(part);
 }
 
@@ -65,6 +66,7 @@ void EffectWorld::add_bodies() {
     part.motion = motion;
     part.first_vertex = static_cast<int>(assembly.x.size());
     part.vertices = 4;
+    part.centre = part.first_vertex;
     const Vec3 far(0, 0, 0.1);
     add_vertices({far + random_vector(0.01), far + random_vector(0.01), far + random_vector(0.01), far + random_vector(0.01)});
     assembly.local.resize(assembly.x.size(), Vec3::Zero());
@@ -75,6 +77,7 @@ void EffectWorld::add_bodies() {
     const Mat3 R = rotation_exp(random_vector(3));
     if (motion == Motion::dynamic) part.mass = {0.02, 0.02 * R * spread.cwiseProduct(spread).asDiagonal() * R.transpose()};
     assembly.bodies.push_back(part);
+    body_mass.push_back(part.mass);
   }
 }
 
@@ -179,6 +182,8 @@ StateView EffectWorld::view() const {
           span(x_start),
           span(x_tilde),
           span(assembly.owner),
+          span(assembly.mass),
+          span(body_mass),
           span(body),
           span(body_target),
           span(grip_target),

@@ -18,6 +18,7 @@ class EffectWorld {
   std::vector<SamplePair> samples;
   std::vector<Vec3> x, x_start, x_tilde;
   std::vector<Pose> body, body_target;
+  std::vector<BodyMass> body_mass;
   std::vector<Vec3> grip_target;
   std::vector<Real> grip_stiffness, mu;
   std::vector<Adhesion> adhesion;

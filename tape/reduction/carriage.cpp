@@ -1,0 +1,42 @@
+#include "tape/reduction/carriage.hpp"
+
+namespace tape {
+Carriage carry(const Assembly& a, const std::vector<Cluster>& clusters, int collar) {
+  Carriage c{.owner = a.owner, .local = a.local, .mass = a.mass, .body_mass = {}, .strips = {}, .next = {}, .blocks = 0};
+  for (const BodyPart& body : a.bodies) {
+    c.body_mass.push_back(body.mass);
+    if (body.block >= 0) c.blocks = std::max(c.blocks, body.block + 2);
+  }
+  std::size_t known = 0;
+  for (std::size_t s = 0; s < a.strips.size(); ++s) {
+    const StripPart& strip = a.strips[s];
+    const int body = a.cluster_body(static_cast<int>(s));
+    std::vector<bool> member(static_cast<std::size_t>(strip.vertices), false);
+    if (body >= 0) {
+      const Cluster& cluster = clusters[known++];
+      member = members(a, strip, cluster, collar);
+      c.body_mass[static_cast<std::size_t>(body)] = cluster.mass;
+      c.next.emplace_back();
+      for (int v = 0; v < strip.vertices; ++v)
+        if ((*cluster.distance)[static_cast<std::size_t>(v)] == 1 && !member[static_cast<std::size_t>(v)]) c.next.back().push_back(v);
+    }
+    c.strips.push_back({c.blocks, 0});
+    Real carried = 0;
+    for (int v = 0; v < strip.vertices; ++v) {
+      const auto i = static_cast<std::size_t>(strip.first_vertex + v);
+      if (!member[static_cast<std::size_t>(v)]) {
+        c.owner[i] = {c.blocks++, -1};
+        continue;
+      }
+      const Cluster& cluster = clusters[known - 1];
+      c.owner[i] = {a.bodies[static_cast<std::size_t>(body)].block, body};
+      c.local[i] = (*cluster.local)[static_cast<std::size_t>(v)] - cluster.centre;
+      carried += c.mass[i];
+      c.mass[i] = 0;
+    }
+    if (body >= 0) c.mass[static_cast<std::size_t>(a.bodies[static_cast<std::size_t>(body)].centre)] = carried;
+    c.strips.back().blocks = c.blocks - c.strips.back().block;
+  }
+  return c;
+}
+}  // namespace tape

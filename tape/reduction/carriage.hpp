@@ -1,0 +1,22 @@
+#pragma once
+#include <vector>
+
+#include "tape/reduction/cluster.hpp"
+
+namespace tape {
+/// What carries each vertex and what has mass, as long as no cluster loses a member. Without clusters it is as the assembly says.
+struct Carriage {
+  struct FreeStrip {
+    int block = 0, blocks = 0;  ///< first block of its vertices that no cluster carries, and how many; they are consecutive
+  };
+  std::vector<VertexOwner> owner;      ///< [nv]
+  std::vector<Vec3> local;             ///< [nv] m, in frame B; vertices of bodies and members of clusters
+  std::vector<Real> mass;              ///< [nv] kg: free strip vertices, and whole bodies at their centres
+  std::vector<BodyMass> body_mass;     ///< [bodies]
+  std::vector<FreeStrip> strips;       ///< [strips]
+  std::vector<std::vector<int>> next;  ///< [clusters] collar vertices one edge from the free tape, counted from the strip's first
+  int blocks = 0;
+};
+/// @param clusters  in the order of the bodies that they are
+Carriage carry(const Assembly& assembly, const std::vector<Cluster>& clusters, int collar);
+}  // namespace tape

@@ -1,0 +1,123 @@
+#include "tape/step/reduce.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+
+#include "tape/bodies/free_flight.hpp"
+#include "tape/reduction/front.hpp"
+
+namespace tape {
+namespace {
+/// A cluster of a state and what belongs to it.
+struct Place {
+  std::size_t cluster, body;
+  const BodyPart& part;
+  const StripPart& strip;
+  const StripGraph& graph;
+  const Strip& roll;
+};
+Place place_of(const World& world, std::size_t cluster) {
+  const std::size_t body = static_cast<std::size_t>(world.first_cluster()) + cluster;
+  const BodyPart& part = world.assembly.bodies[body];
+  const auto strip = static_cast<std::size_t>(part.cluster_of);
+  return {cluster, body, part, world.assembly.strips[strip], world.graphs[cluster], world.setup.scene.strips[strip]};
+}
+int samples(const World& world) { return params<CohesiveZone>(world.setup.effects).samples; }
+int collar(const World& world) { return world.setup.scene.cluster.collar; }
+
+Mat3 inertia_in_world(const BodyMass& mass, const Mat3& R) { return R * inertia_tensor(mass.second) * R.transpose(); }
+
+void put_to_sleep(const World& world, const Place& at, State& state) {
+  const Carriage c = carry(world, state);
+  EffectMemory asleep = *state.clusters[at.cluster].asleep;
+  sort_pairs(world.assembly, c.owner, static_cast<int>(at.body), samples(world), state.memory, asleep);
+  state.clusters[at.cluster].asleep = std::make_shared<const EffectMemory>(std::move(asleep));
+}
+
+/// Gives members back: `left` are those that the cluster has no more.
+void let_go(const World& world, const Place& at, const std::vector<bool>& was, State& state) {
+  Cluster& cluster = state.clusters[at.cluster];
+  BodyState& body = state.bodies[at.body];
+  const std::vector<bool> is = members(world.assembly, at.strip, cluster, collar(world));
+  const Vec3 spin = inertia_in_world(cluster.mass, body.pose.rotation).inverse() * body.angular_momentum;
+  bool any = false;
+  for (int v = 0; v < at.strip.vertices; ++v) {
+    const auto i = static_cast<std::size_t>(v);
+    any |= is[i];
+    if (!was[i] || is[i]) continue;
+    const auto k = static_cast<std::size_t>(at.strip.first_vertex + v);
+    state.v[k] = body.velocity + spin.cross(state.x[k] - body.pose.position);
+  }
+  const Vec3 centre = cluster.centre;
+  weigh(world.assembly, at.strip, is, cluster);
+  const Vec3 shift = body.pose.rotation * (cluster.centre - centre);
+  body.pose.position += shift;
+  body.velocity = any ? Vec3(body.velocity + spin.cross(shift)) : Vec3(Vec3::Zero());
+  body.angular_momentum = any ? Vec3(inertia_in_world(cluster.mass, body.pose.rotation) * spin) : Vec3(Vec3::Zero());
+}
+}  // namespace
+
+Carriage carry(const World& world, const State& state) { return carry(world.assembly, state.clusters, collar(world)); }
+
+SurfaceCarriage surface_carriage(const World& world, const State& state, const Carriage& carriage) {
+  SurfaceCarriage out{.owner = {carriage.owner.begin(), carriage.owner.begin() + world.assembly.surface_vertices},
+                      .follows = world.surface.follows,
+                      .home = {},
+                      .clusters = {}};
+  if (!state.clusters.empty()) out.home.resize(out.owner.size(), Vec3::Zero());
+  for (std::size_t k = 0; k < state.clusters.size(); ++k) {
+    const Place at = place_of(world, k);
+    if (carriage.mass[static_cast<std::size_t>(at.part.centre)] == 0) continue;  // without members
+    const auto hub = world.assembly.strips.size() + static_cast<std::size_t>(at.roll.winding->hub);
+    out.follows[static_cast<std::size_t>(at.part.cluster_of)] = out.follows[hub] = static_cast<int>(at.body);
+    out.clusters[static_cast<int>(at.body)] = state.clusters[k].centre;
+    std::ranges::copy(*state.clusters[k].local, out.home.begin() + at.strip.first_vertex);
+  }
+  return out;
+}
+
+void form_cluster(const World& world, State& state) {
+  const Place at = place_of(world, state.clusters.size());
+  state.clusters.push_back(
+      form_cluster(world.assembly, at.strip, at.graph, world.setup.memory, world.assembly.x, samples(world), collar(world)));
+  Cluster& cluster = state.clusters.back();
+  const std::vector<bool> is = members(world.assembly, at.strip, cluster, collar(world));
+  weigh(world.assembly, at.strip, is, cluster);
+  BodyState body{.pose = {Mat3::Identity(), cluster.centre}};
+  for (int v = 0; v < at.strip.vertices; ++v) {
+    if (!is[static_cast<std::size_t>(v)]) continue;
+    const auto k = static_cast<std::size_t>(at.strip.first_vertex + v);
+    body.velocity += world.assembly.mass[k] / cluster.mass.mass * state.v[k];
+    body.angular_momentum += world.assembly.mass[k] * (state.x[k] - cluster.centre).cross(state.v[k]);
+  }
+  state.bodies.push_back(body);
+  if (state.clusters.size() == world.graphs.size())
+    for (std::size_t k = 0; k < state.clusters.size(); ++k) put_to_sleep(world, place_of(world, k), state);
+}
+
+bool advance_fronts(const World& world, const Carriage& carriage, const State& before, State& after) {
+  bool moved = false;
+  for (std::size_t k = 0; k < after.clusters.size(); ++k) {
+    const Place at = place_of(world, k);
+    Cluster& cluster = after.clusters[k];
+    const FrontView view{world.assembly, at.strip, after.x, after.bodies[at.body].pose,
+                         after.bodies[static_cast<std::size_t>(at.roll.winding->hub)].pose};
+    const bool bonded = world.setup.scene.adhesion(at.roll.material, at.roll.material).law == AdhesionLaw::bond;
+    const std::vector<Bonds::Memory>& bonds = std::get<MemoryOf<Bonds>>(after.memory).pairs;
+    if (bonded) mark_released(view, std::get<MemoryOf<Bonds>>(before.memory).pairs, bonds, cluster);
+    const Real delta = world.setup.scene.cluster.gate_distance * world.setup.scene.dhat();
+    const std::vector<int> free =
+        pass_front(view, cluster, carriage.next[k], world.setup.scene.cluster.gate, delta, bonded ? &bonds : nullptr);
+    if (free.empty()) continue;
+    moved = true;
+    const std::vector<bool> was = members(world.assembly, at.strip, cluster, collar(world));
+    std::vector<int> distance = *cluster.distance;
+    at.graph.spread(free, distance);
+    cluster.distance = std::make_shared<const std::vector<int>>(std::move(distance));
+    for (int v : free) cluster.released.erase(v);
+    let_go(world, at, was, after);
+    put_to_sleep(world, at, after);
+  }
+  return moved;
+}
+}  // namespace tape
