@@ -59,6 +59,7 @@ struct StepReport {
   std::vector<EffectReport> effects;
   std::vector<StageReport> stages;
   Real adhesion_work = 0;  ///< [J] change of the energy of what adheres by what was remembered of the step: growth of beta adds
+  Real woken = 0;          ///< [J] stored in what woke when clusters lost members, at the end
   std::vector<AdhesionReport> adhesion;  ///< [Scene::adhesives]
   std::vector<Vec3> grip_force;          ///< [grips] N that the grip exerts on what it holds
   std::vector<Vec3> body_force;          ///< [bodies] N of contact and grips on the body (driven and dynamic)

@@ -131,8 +131,8 @@ class SideStepper final : public Stepper {
         next.time = end;
         ++next.step;
         finish_step(world_, carriage_, state, next, dt, report);
+        report.woken = move_fronts(state, next);
         collect(report);
-        advance_fronts(world_, carriage_, state, next);
         state = std::move(next);
       }
       if (!report.ok) collect(report);
@@ -234,6 +234,24 @@ class SideStepper final : public Stepper {
     report.failure.clear();
     state = std::move(next);
     return true;
+  }
+
+  /// Lets clusters lose members at the end of a step. @return [J] stored in what wakes
+  Real move_fronts(const State& before, State& after) {
+    const Stopwatch watch(front_ms_);
+    if (!advance_fronts(world_, carriage_, before, after)) return 0;
+    const Real known = stored_energy() + std::exchange(regained_, 0);
+    begin(after, dt_);
+    take_up(after);
+    recall(after.memory);
+    return stored_energy() - known;
+  }
+  Real stored_energy() {
+    Real sum = 0;
+    objective_->for_each([&]<class T>(std::string_view, Term<T>& term) {
+      if (!requires { T::incremental; }) sum += objective::energy_of(term, view(now_)).sum;
+    });
+    return sum;
   }
 
   void read_back(State& state, Real dt) const {
@@ -427,7 +445,7 @@ class SideStepper final : public Stepper {
   }
 
   void reset_times() {
-    search_ms_ = assembly_ms_ = linear_ms_ = ccd_ms_ = line_search_ms_ = 0;
+    search_ms_ = assembly_ms_ = linear_ms_ = ccd_ms_ = line_search_ms_ = front_ms_ = 0;
     searches_ = 0;
     regained_ = 0;
     capped_before_ = search_ ? search_->report().capped : 0;
@@ -457,6 +475,7 @@ class SideStepper final : public Stepper {
     if (search_) report.stages = {{"broad_phase", search_ms_}, {"ccd", ccd_ms_}};
     report.stages.insert(report.stages.end(),
                          {{"assembly", assembly_ms_}, {"linear_solver", linear_ms_}, {"line_search", line_search_ms_}});
+    if (!world_.graphs.empty()) report.stages.push_back({"front", front_ms_});
   }
 
   static std::vector<ContactPair> pairs_on_host(Span<const ContactPair> pairs) {
@@ -487,7 +506,7 @@ class SideStepper final : public Stepper {
   EnergySum energy_;                            // at now_
   Real dt_ = 0, moving_mass_ = 0, extent_ = 0;  // extent_: largest coordinate [m]
   bool overshot_ = false;
-  Real search_ms_ = 0, assembly_ms_ = 0, linear_ms_ = 0, ccd_ms_ = 0, line_search_ms_ = 0;
+  Real search_ms_ = 0, assembly_ms_ = 0, linear_ms_ = 0, ccd_ms_ = 0, line_search_ms_ = 0, front_ms_ = 0;
   int searches_ = 0;
   long long capped_before_ = 0;
 };
