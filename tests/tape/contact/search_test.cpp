@@ -183,6 +183,51 @@ TEST(ContactSearch, ARollThatTurnsAndFliesHasTheCandidatesOfOneAtRest) {
   }
 }
 
+TEST(ContactSearch, CandidatesHoldEveryPairWithWhatSleepsInACluster) {
+  constexpr int kColumns = 7;
+  for (bool table : {false, true}) {
+    Scene scene(test::wound_strip(2, 2.7e-4, kXi));
+    test::Surface& s = scene.surface;
+    const std::vector<VertexOwner> free = s.mesh.owner;
+    const std::vector<Vec3> x = s.x;
+    const VertexOwner body{s.blocks, 0};
+    s.blocks += 2;
+    if (table) add_table(s, 21.8e-3);
+    // It turns and flies; its members are at home in another frame.
+    const Pose pose{rotation_exp(Vec3(0.3, -0.2, 2)), Vec3(1e-4, 0, 0.01)};
+    const Vec3 centre(0.2, 0.1, -0.3), spin(0, 0, 0.02), flight(1e-4, -2e-4, 1e-4);
+    scene.bodies = {pose};
+    scene.direction.resize(static_cast<std::size_t>(s.blocks), Vec3::Zero());
+    scene.jiggle(2e-5, 5);
+    for (std::size_t v = 0; v < x.size(); ++v) {
+      const Vec3 arm = x[v] - pose.position;
+      scene.direction[static_cast<std::size_t>(free[v].block)] += flight + rotate(spin, arm) - arm;
+    }
+    scene.direction[static_cast<std::size_t>(body.block)] = flight, scene.direction[static_cast<std::size_t>(body.block) + 1] = spin;
+    ContactSearch search(scene.mesh(), kDhat, kDhat);
+    const int rows = static_cast<int>(x.size()) / kColumns;
+    for (int members : {rows - 6, rows - 9, rows / 3, 0}) {  // then some wake, so many that trees are planted anew, and all
+      SurfaceCarriage carriage{.owner = s.mesh.owner, .follows = {members > 0 ? 0 : -1}, .home = {}, .clusters = {}};
+      if (table) carriage.follows.push_back(-1);
+      if (members > 0) carriage.clusters[0] = centre;
+      carriage.home.resize(s.x.size(), Vec3::Zero());
+      for (std::size_t v = 0; v < x.size(); ++v) {
+        carriage.owner[v] = static_cast<int>(v) < kColumns * members ? body : free[v];
+        carriage.home[v] = centre + pose.rotation.transpose() * (x[v] - pose.position);
+      }
+      s.mesh.owner = carriage.owner;
+      search.set_carriage(carriage);
+      search.update(scene.paths(), 2e-5);
+      const std::set<Key> found = keys(search.candidates());
+      EXPECT_EQ(found.size(), static_cast<std::size_t>(search.candidates().size)) << "none twice";
+      expect_holds_all(found, near_pairs(scene, 2 * kXi, kDhat));
+      std::set<Key> admissible;
+      all_pairs(scene.mesh(), [&](const Key& k) { admissible.insert(k); });
+      EXPECT_TRUE(std::ranges::includes(admissible, found)) << members << " rows sleep";
+    }
+  }
+}
+
 TEST(ContactSearch, CandidatesHoldEveryPairOfRollsAndFolds) {
   for (const test::Surface& s : {test::wound_strip(1.3, 2.7e-4, kXi), test::folded_strip(3, 10, 2.7e-4, kXi)}) {
     Scene scene(s);
