@@ -34,7 +34,7 @@ void put_to_sleep(const World& world, const Place& at, State& state) {
   state.clusters[at.cluster].asleep = std::make_shared<const EffectMemory>(std::move(asleep));
 }
 
-/// Gives members back: `left` are those that the cluster has no more.
+/// Gives back the members that the cluster no longer has. @param was  its members before
 void let_go(const World& world, const Place& at, const std::vector<bool>& was, State& state) {
   Cluster& cluster = state.clusters[at.cluster];
   BodyState& body = state.bodies[at.body];

@@ -132,11 +132,10 @@ class SideStepper final : public Stepper {
         ++next.step;
         finish_step(world_, carriage_, state, next, dt, report);
         report.woken = move_fronts(state, next);
-        collect(report);
         state = std::move(next);
       }
-      if (!report.ok) collect(report);
     }
+    collect(report);
     return report;
   }
 

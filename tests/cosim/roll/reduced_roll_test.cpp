@@ -138,7 +138,7 @@ TEST(ReducedRoll, FormsWithTheMomentumOfItsTape) {
 }
 
 namespace {
-/// Angle [deg] by which the hub has turned about y after some time in a roll that is spun by its free end.
+/// Angle [deg] by which the hub turns about y in some time, in a roll that spins as a whole and drags its free end along.
 Real hub_angle(const char* model, Real dt, Real time) {
   const World world = roll({std::string("model=") + model, "time.dt=" + to_text(dt), "solver.velocity_tol=1e-5", "gravity=[0,0,-9.81]"});
   const std::unique_ptr<Stepper> stepper = make_stepper(Backend::cpu, world);
@@ -173,24 +173,19 @@ TEST(ReducedRoll, GoesOnBitForBitFromASnapshotBeforeAndAfterARelease) {
     State state = State::start(world);
     const auto tip = static_cast<std::size_t>(world.assembly.strips[0].vertices - 1);
     for (std::size_t v = tip - 27; v <= tip; ++v) state.v[v] = Vec3(0, 0, 20);  // the end is flung off the roll
-    std::vector<std::string> hashes;
     const File file;
-    std::vector<int> members = {members_of(world, state)};
-    for (int k = 0; k < 12; ++k) {
-      if (k % 3 == 0) {
-        save_snapshot(file.path.string(), world, state);
-        const std::unique_ptr<Stepper> other = make_stepper(Backend::cpu, world);
-        State again = load_snapshot(file.path.string(), world), here = state;
-        EXPECT_EQ(again.hash(), state.hash());
-        for (int n = 0; n < 3; ++n) {
-          ASSERT_TRUE(other->step(again).ok);
-          ASSERT_TRUE(stepper->step(here).ok);
-        }
-        EXPECT_EQ(again.hash(), here.hash()) << model << " step " << k;
-        state = here;
+    const int members = members_of(world, state);
+    for (int part = 0; part < 4; ++part) {
+      save_snapshot(file.path.string(), world, state);
+      const std::unique_ptr<Stepper> other = make_stepper(Backend::cpu, world);
+      State again = load_snapshot(file.path.string(), world);
+      EXPECT_EQ(again.hash(), state.hash());
+      for (int k = 0; k < 3; ++k) {
+        ASSERT_TRUE(other->step(again).ok);
+        ASSERT_TRUE(stepper->step(state).ok);
       }
-      members.push_back(members_of(world, state));
+      EXPECT_EQ(again.hash(), state.hash()) << model << ", part " << part;
     }
-    EXPECT_LT(members.back(), members.front()) << model << ": nothing was released";
+    EXPECT_LT(members_of(world, state), members) << model << ": nothing was released";
   }
 }
