@@ -66,7 +66,7 @@ int wind(const WindArguments& arguments) {
   const Real hub_inertia = hub.solid->second(0, 0) + hub.solid->second(1, 1);  // per density, about its axis z
   const std::map<std::string, Real> formula = {{"turns", winding.turns},
                                                {"wound_length_m", annulus_length(winding)},
-                                               {"outer_radius_m", winding.outer_radius()},
+                                               {"outer_radius_m", annulus_radius(winding)},
                                                {"roll_mass_kg", tape.mass + hub.density * hub.solid->volume},
                                                {"roll_inertia_kg_m2", tape.inertia + hub.density * hub_inertia}};
   for (const auto& [name, value] : cosim::roll_figures(roll.world, roll.state, 0)) {

@@ -96,6 +96,8 @@ struct Annulus {
 };
 }  // namespace
 
+Real annulus_radius(const Winding& winding) { return Annulus(winding).outer; }
+
 Real annulus_length(const Winding& winding) {
   const Annulus a(winding);
   return kPi * (a.outer * a.outer - a.inner * a.inner) / winding.pitch;

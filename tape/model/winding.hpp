@@ -88,6 +88,7 @@ AxialMass core_mass(const Core& core);
 /// thickness density:
 ///   length pi (R^2 - r^2)/p,  mass l length,  inertia l pi (R^4 - r^4)/(2 p).
 /// That is the integral over r dtheta for the mean radius of each turn; climbing makes the arc longer by some parts in a hundred thousand.
-Real annulus_length(const Winding& winding);
+Real annulus_radius(const Winding& winding);  ///< [m] R
+Real annulus_length(const Winding& winding);  ///< [m]
 AxialMass annulus_mass(const Winding& winding, const Film& film);
 }  // namespace tape

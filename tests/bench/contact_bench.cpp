@@ -98,10 +98,16 @@ struct Scene {
     assembly.blocks = x.size();
     std::vector<bool> on;
     for_each_effect([&]<class T>(std::type_identity<T>) { on.push_back(T::name == Barrier::name); });
-    potential.emplace(empty, EffectParams{}, assembly, on, view());
+    potential.emplace(empty, EffectParams{}, assembly, on);
   }
   PathView paths() const { return {x.span(), owner.span(), direction.span(), bodies.span()}; }
-  StateView view() const { return {0.01, false, x.span(), x.span(), x.span(), owner.span(), {}, {}, {}, {}, {}, {}, {}}; }
+  StateView view() const {
+    StateView s{};
+    s.dt = 0.01;
+    s.x = s.x_start = s.x_tilde = x.span();
+    s.owner = owner.span();
+    return s;
+  }
   int pairs() const { return search.candidates().size; }
 };
 Scene& scene(benchmark::State& state) {

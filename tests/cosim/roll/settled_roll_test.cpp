@@ -50,7 +50,7 @@ void expect_as_wound(const std::vector<std::string>& change) {
   const std::map<std::string, Real> f = figures(roll);
   EXPECT_NEAR(f.at("turns"), w.turns, 0.02) << "rows are 1/42 of a turn apart";
   EXPECT_NEAR(f.at("wound_length_m"), annulus_length(w), 5e-3 * annulus_length(w) + w.cell) << "a row more or less";
-  EXPECT_NEAR(f.at("outer_radius_m"), w.outer_radius(), 5e-3 * w.outer_radius());
+  EXPECT_NEAR(f.at("outer_radius_m"), annulus_radius(w), 5e-3 * annulus_radius(w));
   const AxialMass core = core_mass({}), tape = annulus_mass(w, roll.world.setup.scene.films[0]);
   EXPECT_NEAR(f.at("roll_mass_kg"), core.mass + tape.mass, 5e-3 * (core.mass + tape.mass));
   EXPECT_NEAR(f.at("roll_inertia_kg_m2"), core.inertia + tape.inertia, 5e-3 * (core.inertia + tape.inertia));

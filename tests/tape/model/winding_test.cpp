@@ -49,7 +49,7 @@ TEST(Winding, HasTheRadiusLengthMassAndInertiaOfTheReferenceTable) {  // checks.
   for (const auto& row : rows) {
     const Winding w = on_the_core(row.turns);
     const AxialMass tape = annulus_mass(w, kVinyl);
-    EXPECT_NEAR(1e3 * w.outer_radius(), row.outer_mm, 0.5e-3) << row.turns;
+    EXPECT_NEAR(1e3 * annulus_radius(w), row.outer_mm, 0.5e-3) << row.turns;
     EXPECT_NEAR(1e3 * annulus_length(w), row.length_mm, 0.5e-3) << row.turns;
     EXPECT_NEAR(1e3 * (core.mass + tape.mass), row.mass_g, 0.5e-6) << row.turns;
     EXPECT_NEAR(core.inertia + tape.inertia, row.inertia, 0.5 * row.last_digit) << row.turns;
