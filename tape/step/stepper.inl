@@ -1,5 +1,7 @@
 #pragma once
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -279,12 +281,21 @@ class SideStepper final : public Stepper {
     if (!normals_) return;
     report.adhesion = adhesion();
     StateView s = view(now_);
-    const Real adhesive = objective_->adhesive_energy(s), contact = objective_->contact_energy(s, replaced_, search_->surface());
+    const Real adhesive = objective_->adhesive_energy(s);
     state.memory = remember(dt);
     s.x_start = s.x;
     objective_->recall(state.memory, s, search_->surface());
-    regained_ = contact - objective_->contact_energy(s, pairs_out_of_contact(state.memory), search_->surface());
+    const std::vector<VertexTriangle> replaced = pairs_out_of_contact(state.memory);
+    regained_ = contact_energy(s, without(replaced_, replaced)) - contact_energy(s, without(replaced, replaced_));
     report.adhesion_work += objective_->adhesive_energy(s) - adhesive + regained_;
+  }
+  Real contact_energy(const StateView& s, const std::vector<VertexTriangle>& pairs) {
+    return objective_->contact_energy(s, pairs, search_->surface());
+  }
+  static std::vector<VertexTriangle> without(const std::vector<VertexTriangle>& pairs, const std::vector<VertexTriangle>& others) {
+    std::vector<VertexTriangle> left;
+    std::ranges::set_difference(pairs, others, std::back_inserter(left), {}, &VertexTriangle::key, &VertexTriangle::key);
+    return left;
   }
   std::vector<AdhesionReport> adhesion() {
     std::vector<AdhesionReport> out;

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <numbers>
 
@@ -177,9 +178,11 @@ TEST(BondedPair, PressedWithMoreThanTheBondAloneWithstandsItNeitherCrossesNorRel
     corner.simulation.run_to(0.5, [&](const test::Simulation&) {
       EXPECT_GT(corner.height(), 0);
       EXPECT_EQ(corner.bond().live, 1);
+      EXPECT_TRUE(std::isfinite(corner.simulation.energy())) << "the contact that it replaces would be crossed";
     });
     EXPECT_TRUE(corner.simulation.broken.empty()) << corner.simulation.broken.front();
     EXPECT_NEAR(-corner.bond().normal, force, 0.02 * force) << "it carries the load";
+    EXPECT_EQ(corner.height() < test::vinyl().xi, force > 2.57);
   }
 }
 TEST(BondedPair, PulledItReleasesAtTheThreshold) {
