@@ -1,4 +1,6 @@
 #pragma once
+#include <string>
+
 #include "tape/core/settings.hpp"
 #include "tape/core/types.hpp"
 
@@ -11,12 +13,14 @@ struct LookAtSettings {
   Vec3 target{0, 0, 0};      ///< [m]   shown in the middle of the picture
   Vec3 up{0, 0, 1};          ///< [1]   drawn upwards
   Real fov = 35;             ///< [deg] vertical field of view
+  std::string follow = "";   ///< thing that the camera moves along with, without turning
   template <class F>
   void fields(F&& f) {
     f("eye", eye, "m", Range::any(), "where the camera stands");
     f("target", target, "m", Range::any(), "point in the middle of the picture");
     f("up", up, "", Range::any(), "direction drawn upwards");
     f("fov", fov, "deg", Range::closed(1, 150), "vertical field of view");
+    f("follow", follow, "", Range::any(), "body or strip that the camera moves along with, or tape.tip; it does not turn");
   }
 };
 

@@ -2,12 +2,25 @@
 
 #include <png.h>
 
+#include <algorithm>
 #include <string>
 
 #include "cosim/run/new_file.hpp"
 #include "tape/core/error.hpp"
 
 namespace tape::render {
+Picture side_by_side(const std::vector<Picture>& pictures) {
+  int width = 0;
+  for (const Picture& picture : pictures) width += picture.width;
+  Picture joined(width, pictures.empty() ? 0 : pictures[0].height);
+  int left = 0;
+  for (const Picture& picture : pictures) {
+    for (int y = 0; y < joined.height; ++y) std::copy_n(picture.at(0, y), 3 * picture.width, joined.at(left, y));
+    left += picture.width;
+  }
+  return joined;
+}
+
 void write_png(const std::filesystem::path& path, const Picture& picture) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;

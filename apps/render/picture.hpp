@@ -18,6 +18,9 @@ struct Picture {
   const std::uint8_t* at(int x, int y) const { return const_cast<Picture*>(this)->at(x, y); }
 };
 
+/// Pictures of equal height, from left to right.
+Picture side_by_side(const std::vector<Picture>& pictures);
+
 /// Writes under a temporary name and renames.  @throws InputError naming the file and the reason
 void write_png(const std::filesystem::path& path, const Picture& picture);
 }  // namespace tape::render

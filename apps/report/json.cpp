@@ -1,5 +1,7 @@
 #include "apps/report/json.hpp"
 
+#include <algorithm>
+
 #include "tape/model/strip_mesh.hpp"
 
 namespace tape::report {
@@ -62,6 +64,12 @@ Json settings_json(const Setup& setup) {
         {{"between", {scene.materials[static_cast<std::size_t>(pair.a)].name, scene.materials[static_cast<std::size_t>(pair.b)].name}},
          {"mu", pair.mu}});
   for (const AdhesivePair& pair : scene.adhesives) json["adhesion"].push_back(adhesion_json(scene, pair));
+  if (std::any_of(scene.strips.begin(), scene.strips.end(), [&](const Strip& s) { return scene.reduces(s); }))
+    add_fields(json["cluster"], scene.cluster);
+  for (const AxleJoint& axle : scene.axles) {
+    json["axles"].push_back({{"body", axle.body}, {"to", axle.to}});
+    add_fields(json["axles"].back(), axle.params);
+  }
   add_fields(json["solver"], setup.newton);
   add_fields(json["solver"], setup.linear);
   for_each_effect([&]<class T>(std::type_identity<T>) {

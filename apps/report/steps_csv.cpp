@@ -37,6 +37,8 @@ void visit_columns(const World& world, const cosim::StepRow& row, const F& f) {
   vector("momentum", "kg_m_per_s", r.momentum);
   for (std::size_t g = 0; g < world.setup.scene.grips.size(); ++g)
     vector("grip_" + world.setup.scene.grips[g].name, "N", at(r.grip_force, g));
+  for (std::size_t k = 0; k < world.setup.scene.axles.size(); ++k)
+    f("axle_" + world.setup.scene.axles[k].body + "_Nm", k < r.axle_torque.size() ? r.axle_torque[k] : 0);
   for (std::size_t b = 0; b < world.setup.scene.bodies.size(); ++b)
     if (world.assembly.bodies[b].motion != Motion::fixed) vector("body_" + world.setup.scene.bodies[b].name, "N", at(r.body_force, b));
 }

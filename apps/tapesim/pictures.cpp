@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <set>
 
 #include "apps/render/renderer.hpp"
 #include "apps/report/strain.hpp"
@@ -18,38 +20,127 @@ using cosim::RecordedFrame, cosim::RecordedMesh, cosim::StateReader;
 using render::ColorBy;
 
 const Vec3 kTapeFront(0.86, 0.66, 0.30), kTapeBack(0.93, 0.82, 0.55);  // sRGB; the back is the sticky side
+const Vec3 kTracked(0.80, 0.10, 0.14);
+/// By TapePart.
+const struct {
+  const char* name;
+  Vec3 color;
+} kParts[] = {{"free tape", kTapeFront}, {"collar", {0.16, 0.60, 0.58}}, {"cluster", {0.30, 0.36, 0.50}}};
 const Vec3 kBodyColors[] = {{0.45, 0.55, 0.68}, {0.55, 0.62, 0.50}, {0.66, 0.50, 0.48}, {0.58, 0.52, 0.66}, {0.62, 0.62, 0.60}};
 
-/// Draws recorded states of one recording with one camera and one scale of colours.
+/// Draws recorded states of one recording with its cameras side by side and one scale of colours.
 class Studio {
  public:
   Studio(const StateReader& recording, const PictureParams& params)
-      : recording_(recording), params_(params), camera_(make_camera()), renderer_(camera_.width, camera_.height) {
+      : recording_(recording), params_(params), views_(make_views()), renderer_(views_[0].camera.width, views_[0].camera.height) {
     look_through();
   }
-  int width() const { return camera_.width; }
-  int height() const { return camera_.height; }
+  int width() const { return views_[0].camera.width * static_cast<int>(views_.size()); }
+  int height() const { return views_[0].camera.height; }
 
   render::Picture draw(const RecordedFrame& frame) {
     const RecordedMesh& mesh = recording_.mesh();
     const std::vector<Vec3> x = vertex_positions(mesh, frame);
     render::RenderScene scene{.bounds = everything_, .caption = fmt::format("{}   t = {:.2f} s", mesh.scene, frame.time)};
     if (params_.view.ground) scene.ground = everything_.min().z();
-    const std::vector<Vec3> colors =
-        params_.view.color == ColorBy::material ? std::vector<Vec3>() : render::colors_of(values(frame, x), bar_);
-    render::Legend legend;
-    if (!colors.empty()) legend.bar = bar_;
-    for (std::size_t o = 0; o < mesh.objects.size(); ++o) {
-      scene.meshes.push_back(object_mesh(o, x, colors));
-      if (colors.empty()) legend.swatches.push_back({mesh.objects[o].name, object_color(o)});
+    const std::vector<Vec3> colors = vertex_colors(frame, x);
+    for (std::size_t o = 0; o < mesh.objects.size(); ++o) scene.meshes.push_back(object_mesh(o, x, colors));
+    scene.legends.push_back(legend());
+    std::vector<render::Picture> pictures;
+    for (View& view : views_) {
+      render::Camera camera = view.camera;
+      if (!view.follow.empty()) camera.X_WC.position += place(view.follow, x) - view.start;
+      pictures.push_back(renderer_.draw(scene, camera));
+      scene.legends.clear(), scene.caption.clear();  // once
     }
-    scene.legends.push_back(legend);
-    return renderer_.draw(scene, camera_);
+    return render::side_by_side(pictures);
   }
 
  private:
+  /// A camera, and the vertices whose middle it moves along with.
+  struct View {
+    render::Camera camera;
+    std::vector<int> follow = {};
+    Vec3 start = Vec3::Zero();  ///< [m] their middle in the first state
+  };
   Vec3 object_color(std::size_t o) const {
     return recording_.mesh().objects[o].strip ? kTapeFront : kBodyColors[o % std::size(kBodyColors)];
+  }
+  /// Whether colours tell things apart, not values.
+  bool by_thing() const { return params_.view.color == ColorBy::material || params_.view.color == ColorBy::part; }
+
+  render::Legend legend() const {
+    render::Legend legend;
+    if (!by_thing()) legend.bar = bar_;
+    if (params_.view.color == ColorBy::part)
+      for (std::size_t p = 0; p < std::size(kParts); ++p) legend.swatches.push_back({kParts[p].name, kParts[p].color});
+    const auto& objects = recording_.mesh().objects;
+    for (std::size_t o = 0; o < objects.size(); ++o)
+      if (params_.view.color == ColorBy::material || (by_thing() && !objects[o].strip))
+        legend.swatches.push_back({objects[o].name, object_color(o)});
+    if (params_.view.track >= 0) legend.swatches.push_back({fmt::format("row at {:g} m", params_.view.track), kTracked});
+    return legend;
+  }
+
+  std::vector<Vec3> vertex_colors(const RecordedFrame& frame, const std::vector<Vec3>& x) const {
+    const RecordedMesh& mesh = recording_.mesh();
+    if (params_.view.color == ColorBy::material && params_.view.track < 0) return {};
+    std::vector<Vec3> colors(x.size(), Vec3::Zero());
+    for (std::size_t o = 0; o < mesh.objects.size(); ++o)
+      for (int t = mesh.objects[o].first_triangle; t < mesh.objects[o].first_triangle + mesh.objects[o].triangles; ++t)
+        for (int v : mesh.triangles[static_cast<std::size_t>(t)]) colors[static_cast<std::size_t>(v)] = object_color(o);
+    if (params_.view.color == ColorBy::part)
+      for (std::size_t v = 0; v < frame.part.size(); ++v) colors[v] = kParts[static_cast<std::size_t>(frame.part[v])].color;
+    if (!by_thing()) colors = render::colors_of(values(frame, x), bar_);
+    for (int v : tracked_) colors[static_cast<std::size_t>(v)] = kTracked;
+    return colors;
+  }
+
+  /// Vertices of the row of the first strip that lies nearest to this place [m] at rest.
+  std::vector<int> row_at(Real along) const {
+    const RecordedMesh& mesh = recording_.mesh();
+    std::vector<int> of_strip, row;
+    for (const cosim::RecordedObject& object : mesh.objects) {
+      if (!object.strip) continue;
+      of_strip = vertices_of(object);
+      break;
+    }
+    const auto off = [&](int v) { return std::fabs(mesh.rest[static_cast<std::size_t>(v)].x() - along); };
+    Real nearest = std::numeric_limits<Real>::infinity();
+    for (int v : of_strip) nearest = std::min(nearest, off(v));
+    for (int v : of_strip)
+      if (off(v) < nearest + 1e-9) row.push_back(v);
+    return row;
+  }
+  std::vector<int> vertices_of(const cosim::RecordedObject& object) const {
+    std::set<int> found;
+    for (int t = object.first_triangle; t < object.first_triangle + object.triangles; ++t)
+      for (int v : recording_.mesh().triangles[static_cast<std::size_t>(t)]) found.insert(v);
+    return {found.begin(), found.end()};
+  }
+  /// @throws InputError if nothing is named so
+  std::vector<int> vertices_named(const std::string& name) const {
+    std::string names;
+    for (const cosim::RecordedObject& object : recording_.mesh().objects) {
+      const std::vector<int> all = vertices_of(object);
+      if (object.name == name) return all;
+      names += (names.empty() ? "" : ", ") + object.name;
+      if (!object.strip) continue;
+      names += ", " + object.name + ".tip";
+      if (object.name + ".tip" != name) continue;
+      Real length = 0;
+      std::vector<int> tip;
+      const auto along = [&](int v) { return recording_.mesh().rest[static_cast<std::size_t>(v)].x(); };
+      for (int v : all) length = std::max(length, along(v));
+      std::copy_if(all.begin(), all.end(), std::back_inserter(tip), [&](int v) { return along(v) > length - 1e-9; });
+      return tip;
+    }
+    throw InputError("camera.follow = " + name + ": no thing of the scene has this name (allowed: " + names + ")");
+  }
+  static Vec3 place(const std::vector<int>& vertices, const std::vector<Vec3>& x) {
+    Vec3 sum = Vec3::Zero();
+    for (int v : vertices) sum += x[static_cast<std::size_t>(v)];
+    return sum / static_cast<Real>(vertices.size());
   }
 
   render::Mesh object_mesh(std::size_t o, const std::vector<Vec3>& x, const std::vector<Vec3>& colors) const {
@@ -95,12 +186,13 @@ class Studio {
   /// The bounds of the whole motion, and the range of values that are to be seen in it: up to what 95 % of the states stay below, so
   /// that a short impact does not leave all others dark.
   void look_through() {
+    if (params_.view.track >= 0) tracked_ = row_at(params_.view.track);
     std::vector<Real> largest;  // of each state
     for (int i = 0; i < recording_.frames(); ++i) {
       const RecordedFrame frame = recording_.frame(i);
       const std::vector<Vec3> x = vertex_positions(recording_.mesh(), frame);
       for (const Vec3& p : x) everything_.extend(p);
-      if (params_.view.color == ColorBy::material || params_.view.color == ColorBy::adhesion) continue;
+      if (by_thing() || params_.view.color == ColorBy::adhesion) continue;
       largest.push_back(0);
       for (const Real value : values(frame, x))
         if (value > largest.back()) largest.back() = value;
@@ -109,6 +201,7 @@ class Studio {
       bar_ = {"adhesion left (beta; bond: 1)", "", 0, 1};
       return;
     }
+    if (by_thing()) return;
     const bool strain = params_.view.color == ColorBy::strain;
     const cosim::Distribution peaks = cosim::distribution(largest);
     const std::string cut = peaks.max > peaks.p95 ? ", peaks cut" : "";
@@ -116,11 +209,23 @@ class Studio {
     bar_.low = 0;  // both are magnitudes
   }
 
-  render::Camera make_camera() const {
-    const int width = params_.video.width, height = params_.video.height;
-    if (const auto* pinhole = std::get_if<render::PinholeSettings>(&params_.camera)) return render::Camera::make(*pinhole);
-    if (const auto* look = std::get_if<render::LookAtSettings>(&params_.camera)) return render::Camera::make(*look, width, height);
-    return render::Camera::make(render::overview(moving_bounds(), width, height), width, height);
+  std::vector<View> make_views() const {
+    const int all = static_cast<int>(params_.cameras.size()), height = params_.video.height;
+    const int width = all < 2 ? params_.video.width : params_.video.width / all / 2 * 2;
+    std::vector<View> views;
+    for (const CameraParams& camera : params_.cameras) {
+      if (const auto* pinhole = std::get_if<render::PinholeSettings>(&camera)) views.push_back({render::Camera::make(*pinhole)});
+      const auto* look = std::get_if<render::LookAtSettings>(&camera);
+      if (!look) continue;
+      View view{render::Camera::make(*look, width, height)};
+      if (!look->follow.empty()) {
+        view.follow = vertices_named(look->follow);
+        view.start = place(view.follow, vertex_positions(recording_.mesh(), recording_.frame(0)));
+      }
+      views.push_back(view);
+    }
+    if (views.empty()) views.push_back({render::Camera::make(render::overview(moving_bounds(), width, height), width, height)});
+    return views;
   }
 
   /// Of strips and of bodies that move.
@@ -140,9 +245,10 @@ class Studio {
 
   const StateReader& recording_;
   PictureParams params_;
-  render::Camera camera_;
+  std::vector<View> views_;
   render::Renderer renderer_;
   render::Bounds everything_;
+  std::vector<int> tracked_;
   render::ColorBar bar_;
 };
 
@@ -160,7 +266,7 @@ void require_frames(const StateReader& recording) {
 }  // namespace
 
 void require_video(const PictureParams& params) {
-  const auto* pinhole = std::get_if<render::PinholeSettings>(&params.camera);
+  const auto* pinhole = params.cameras.empty() ? nullptr : std::get_if<render::PinholeSettings>(&params.cameras[0]);
   require_valid(video_settings(params, pinhole ? pinhole->width : params.video.width, pinhole ? pinhole->height : params.video.height));
 }
 

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <optional>
 #include <variant>
+#include <vector>
 
 #include "apps/render/camera.hpp"
 #include "apps/render/colors.hpp"
@@ -14,28 +15,30 @@ namespace tape::tapesim {
 struct ViewParams {
   render::ColorBy color = render::ColorBy::material;
   bool ground = true;
+  Real track = -1;
   template <class F>
   void fields(F&& f) {
     f("color", color, "", Range::any(), "what colours mean");
     f("ground", ground, "", Range::any(), "a ground with lines each 10 mm at the lowest point of the scene");
+    f("track", track, "m", Range::closed(-1, 100), "paints the row of the first strip that lies here at rest; negative: none");
   }
 };
-/// Section `camera`: by where it looks, or calibrated; without one the camera takes in the whole motion of what moves.
-using CameraParams = std::variant<std::monostate, render::LookAtSettings, render::PinholeSettings>;
+/// One camera of section `camera`: by where it looks, or calibrated.
+using CameraParams = std::variant<render::LookAtSettings, render::PinholeSettings>;
 struct PictureParams {
   ViewParams view;
   video::VideoSettings video;
-  CameraParams camera;
+  std::vector<CameraParams> cameras;  ///< side by side; none: one that takes in the whole motion of what moves
 };
 /// Sections `video` and `camera` of a file.
 PictureParams read_pictures(const cosim::Reader& root);
-/// What stands in `camera`: `fx` and the like make it a calibrated one.
-CameraParams read_camera(const cosim::Reader& camera);
+/// What stands in `camera`: a camera, or a list of them; `fx` and the like make one a calibrated one.
+std::vector<CameraParams> read_cameras(const cosim::Reader& camera);
 /// A camera file: the keys of a `camera` section, or a file with such a section.
-CameraParams load_camera(const std::filesystem::path& file);
+std::vector<CameraParams> load_cameras(const std::filesystem::path& file);
 /// As text that a recording can keep, and back.
-std::string camera_text(const CameraParams& camera);
-CameraParams parse_camera(const std::string& text);
+std::string camera_text(const std::vector<CameraParams>& cameras);
+std::vector<CameraParams> parse_cameras(const std::string& text);
 
 /// @throws InputError where no video can be made so, before anything is simulated for it
 void require_video(const PictureParams& params);

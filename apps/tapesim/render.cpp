@@ -15,6 +15,7 @@ struct RenderArguments {
   std::vector<int> stills;
   int width = 960, height = 540;
   bool no_ground = false;
+  double track = -1;
 };
 
 render::ColorBy color_of(const std::string& name) {
@@ -28,10 +29,10 @@ int render(const RenderArguments& arguments) {
   const std::filesystem::path folder = arguments.folder, out = arguments.out.empty() ? folder : std::filesystem::path(arguments.out);
   const cosim::StateReader recording(folder / "state.h5");
   PictureParams params;
-  params.view = {color_of(arguments.color), !arguments.no_ground};
+  params.view = {color_of(arguments.color), !arguments.no_ground, arguments.track};
   params.video.width = arguments.width;
   params.video.height = arguments.height;
-  params.camera = arguments.camera.empty() ? parse_camera(recording.mesh().camera) : load_camera(arguments.camera);
+  params.cameras = arguments.camera.empty() ? parse_cameras(recording.mesh().camera) : load_cameras(arguments.camera);
   cosim::make_folder(out);
   remember_interrupts();
   for (int frame : arguments.stills) {
@@ -55,7 +56,8 @@ void add_render(CLI::App& app, Action& chosen) {
   CLI::App* command = app.add_subcommand("render", "makes a video or stills from a recorded run");
   command->add_option("RUNDIR", arguments->folder, "folder of a run; its state.h5 is read")->required();
   command->add_option("--camera", arguments->camera,
-                      "YAML file with eye, target, up, fov, or with fx, fy, cx, cy, width, height, position, rotation");
+                      "YAML file with eye, target, up, fov, follow, or with fx, fy, cx, cy, width, height, position, rotation; "
+                      "`camera: [{...}, {...}]`: several side by side");
   std::vector<std::string> colors;
   for (std::string_view name : enum_names(render::ColorBy{})) colors.emplace_back(name);
   command->add_option("--color", arguments->color, "what colours mean")->check(CLI::IsMember(colors));
@@ -66,6 +68,8 @@ void add_render(CLI::App& app, Action& chosen) {
   command->add_option("--width", arguments->width, "[px] of the picture, unless the camera is calibrated")->check(CLI::Range(16, 7680));
   command->add_option("--height", arguments->height, "[px] of the picture, unless the camera is calibrated")->check(CLI::Range(16, 4320));
   command->add_flag("--no-ground", arguments->no_ground, "without the ground and its lines");
+  command->add_option("--track", arguments->track, "[m] paints the row of the first strip that lies here at rest")
+      ->check(CLI::Range(0.0, 100.0));
   command->add_option("--out", arguments->out, "folder for the pictures (default: RUNDIR)");
   command->callback([=, &chosen] { chosen = [=] { return render(*arguments); }; });
 }

@@ -108,7 +108,7 @@ int run(const RunArguments& arguments) {
   State state = arguments.resume.empty() ? State::start(loaded.world) : resumed(arguments.resume, loaded.world);
   const int first_step = state.step;
   RunFolder folder(arguments.out.empty() ? "out/" + loaded.world.setup.scene.name : arguments.out, loaded.world, state,
-                   camera_text(loaded.input.pictures.camera));
+                   camera_text(loaded.input.pictures.cameras));
   remember_interrupts();
   const cosim::RunLog log = simulate(arguments, loaded, *stepper, state, folder);
   const cosim::RunSummary summary = cosim::summarize(loaded.world, log, loaded.input.run.figures);

@@ -55,6 +55,7 @@ std::string settings_text() {
   add<AreaCohesion>(table, "interfaces.N (per_area)");
   add<BondLaw>(table, "interfaces.N (bond)");
   add<ClusterParams>(table, "cluster");
+  add<AxleParams>(table, "axles.N");
   add<ContactParams>(table, "contact");
   add<NewtonParams>(table, "solver");
   add<LinearParams>(table, "solver");

@@ -1,58 +1,64 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
-#include <limits>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <memory>
 
+#include "apps/report/json.hpp"
 #include "apps/report/plot.hpp"
 #include "apps/report/table.hpp"
 #include "apps/tapesim/interrupt.hpp"
 #include "apps/tapesim/progress.hpp"
 #include "apps/tapesim/scene_input.hpp"
-#include "apps/tapesim/study_error.hpp"
+#include "apps/tapesim/study_store.hpp"
 #include "cosim/run/new_file.hpp"
 #include "cosim/run/summary.hpp"
 #include "tape/core/execution.hpp"
+#include "tape/core/hash.hpp"
 
 namespace tape::tapesim {
 namespace {
-constexpr Real kNone = std::numeric_limits<Real>::quiet_NaN();
-
-/// One combination of a study's grid.
-struct StudyRun {
-  std::vector<std::string> values;
-  Real seconds = 0, error = kNone;
-  Real newton = 0;  ///< iterations per step
-  int unmet = 0;    ///< conditions
-  bool pareto = false;
-  std::string failure{};
-  Measured measured{};
-
-  bool measurable() const { return failure.empty(); }
-};
-
 LoadedWorld load_combination(const Study& study, const std::vector<std::string>& values) {
   SceneArguments arguments{.scene = study.scene.string(), .overrides = study.overrides, .model = {}};
   for (std::size_t k = 0; k < values.size(); ++k) arguments.overrides.push_back(study.grid[k].first + "=" + values[k]);
   return load_world(arguments, Rolls::settle);
 }
 
-/// Runs a combination. A numerical failure is a result; bad input is an error of the study.
-StudyRun run_one(const Study& study, const std::vector<std::string>& values) {
+/// Of all that decides the outcome of a run, and its time.
+std::string key_of(const Study& study, const std::vector<std::string>& values, const LoadedWorld& loaded, const State& start) {
+  std::ifstream scene(study.scene, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(scene), {}};
+  for (const auto& lines : {study.overrides, values}) text += fmt::format("{}\n", fmt::join(lines, "\n"));
+  text += fmt::format("{} {} {} {}", TAPE_VERSION, threads(), study.reference.measure, study.reference.angle);
+  text += report::settings_json(loaded.world.setup).dump() + start.hash();
+  Hash hash;
+  hash.add(text.data(), text.size());
+  return hash.text();
+}
+
+/// Runs a combination, unless it is kept. A numerical failure is a result; bad input is an error of the study.
+StudyRun run_one(const Study& study, const std::vector<std::string>& values, const StudyStore& store) {
   StudyRun result{.values = values};
   const LoadedWorld loaded = load_combination(study, values);
-  const std::unique_ptr<Stepper> stepper = make_stepper(Backend::cpu, loaded.world);
   State state = State::start(loaded.world);
+  const std::string key = key_of(study, values, loaded, state);
+  if (store.find(key, result)) return result;
+  const std::unique_ptr<Stepper> stepper = make_stepper(Backend::cpu, loaded.world);
   cosim::RunOptions options{.record = loaded.input.run.record};
   options.stop_asked = interrupted;
   const cosim::RunLog log = simulate(loaded.world, *stepper, state, options);
   const cosim::RunSummary summary = summarize(loaded.world, log, {});
   result.seconds = log.wall;
+  result.step_ms = summary.step_ms;
   result.newton = summary.newton_mean;
   for (const cosim::Condition& condition : summary.conditions) result.unmet += !condition.met;
   result.failure = summary.failure;
-  if (result.measurable() && !log.interrupted) result.measured = measure(study.reference, loaded.world, log);
+  if (log.interrupted) return result;
+  if (result.measurable()) result.measured = measure(study.reference, loaded.world, log);
+  store.keep(key, result);
   return result;
 }
 
@@ -78,6 +84,7 @@ void find_errors(const Study& study, std::vector<StudyRun>& runs) {
     for (StudyRun* run : group) {
       if (run->measurable() && !(finest && run == &last))
         run->error = finest ? distance(study.reference, run->measured, last.measured) : run->measured.error;
+      run->turn_error = turn_distance(run->measured, last.measured);
       seconds.push_back(run->seconds);
       errors.push_back(run->error);
     }
@@ -90,17 +97,22 @@ report::Table make_table(const Study& study, const std::vector<StudyRun>& runs, 
   report::Table table;
   table.columns.push_back("run");
   for (const auto& [key, values] : study.grid) table.columns.push_back(key);
-  const bool has_value = study.reference.kind == Reference::Kind::finest && study.reference.measure != "state";
-  if (has_value) table.columns.push_back(study.reference.measure);
-  for (const char* column : {"error", "seconds", "newton_per_step", "conditions_not_met", "pareto", "note"})
-    table.columns.push_back(column);
+  const std::string figure = study.reference.figure();
+  const bool turns = study.reference.measure == "hub_path";
+  if (!figure.empty()) table.columns.push_back(figure);
+  table.columns.emplace_back("error");
+  if (turns) table.columns.emplace_back("turn_error_deg");
+  for (const char* column : {"seconds", "ms_mean", "ms_p50", "ms_p95", "newton_per_step", "conditions_not_met", "pareto", "note"})
+    table.columns.emplace_back(column);
   for (const StudyRun& run : runs) {
     std::vector<std::string> row = {std::to_string(table.rows.size() + 1)};
     row.insert(row.end(), run.values.begin(), run.values.end());
-    if (has_value) row.push_back(run.measurable() ? number(run.measured.value) : "");
+    if (!figure.empty()) row.push_back(run.measurable() ? number(run.measured.value) : "");
     const std::string note = run.failure.empty() && std::isnan(run.error) ? "finest" : run.failure;
-    for (const std::string& cell : {std::isnan(run.error) ? "" : number(run.error), number(run.seconds), number(run.newton),
-                                    std::to_string(run.unmet), std::string(run.pareto ? "*" : ""), note})
+    row.push_back(std::isnan(run.error) ? "" : number(run.error));
+    if (turns) row.push_back(std::isnan(run.error) ? "" : number(run.turn_error));
+    for (const std::string& cell : {number(run.seconds), number(run.step_ms.mean), number(run.step_ms.p50), number(run.step_ms.p95),
+                                    number(run.newton), std::to_string(run.unmet), std::string(run.pareto ? "*" : ""), note})
       row.push_back(cell);
     table.rows.push_back(row);
   }
@@ -133,6 +145,32 @@ std::string conclusion(const Study& study, const std::vector<StudyRun>& runs) {
                      report::rounded(best->error), label(study, *best));
 }
 
+/// For each value of a key the fastest run that comes near enough to the finest, and how much faster it is than the slowest of these.
+std::string comparable(const Study& study, std::vector<StudyRun>& runs) {
+  const Reference& reference = study.reference;
+  std::string text;
+  for (const std::vector<StudyRun*>& group : groups_of(study, runs)) {
+    const Real finest = group.back()->measured.value;
+    std::vector<const StudyRun*> chosen;
+    for (const std::string& value : study.grid[reference.each].second) {
+      const StudyRun* fastest = nullptr;
+      for (const StudyRun* run : group) {
+        if (run->values[reference.each] != value || !run->measurable()) continue;
+        if (std::abs(run->measured.value - finest) > reference.within * std::abs(finest)) continue;
+        if (!fastest || run->step_ms.mean < fastest->step_ms.mean) fastest = run;
+      }
+      if (fastest) chosen.push_back(fastest);
+    }
+    Real slowest = 0;
+    for (const StudyRun* run : chosen) slowest = std::max(slowest, run->step_ms.mean);
+    for (const StudyRun* run : chosen)
+      text += fmt::format("  {}: {} = {}, {} ms a step, {} times as fast as the slowest\n", label(study, *run), reference.figure(),
+                          report::rounded(run->measured.value), report::rounded(run->step_ms.mean),
+                          report::rounded(slowest / run->step_ms.mean));
+  }
+  return fmt::format("fastest within {} % of the finest:\n{}", report::rounded(100 * reference.within), text);
+}
+
 /// @return what was written
 std::string write_files(const Study& study, const std::vector<StudyRun>& runs, const std::filesystem::path& folder) {
   cosim::write_text(folder / "study.csv", report::to_csv(make_table(study, runs, tape::to_text)));
@@ -156,21 +194,24 @@ int run_study(const std::string& file, const std::vector<std::string>& overrides
   for (const auto& values : combinations) load_combination(study, values);  // bad input is found before the first run
   cosim::make_folder(folder);
   remember_interrupts();
+  const StudyStore store(folder / "runs.json");
   std::vector<StudyRun> runs;
   {
     Progress progress("study " + study.name, static_cast<int>(combinations.size()));
     for (const std::vector<std::string>& values : combinations) {
-      StudyRun run = run_one(study, values);
+      StudyRun run = run_one(study, values, store);
       if (interrupted()) break;
       runs.push_back(std::move(run));
       progress.update(static_cast<int>(runs.size()), label(study, runs.back()));
     }
   }
-  if (interrupted()) fmt::print("interrupted after {} of {} runs; a study starts anew\n", runs.size(), combinations.size());
+  if (interrupted())
+    fmt::print("interrupted after {} of {} runs; to go on, give the same command again\n", runs.size(), combinations.size());
   if (interrupted() && (runs.empty() || study.reference.kind == Reference::Kind::finest)) return kInterrupted;
   find_errors(study, runs);
   fmt::print("{}\n{}\n{}\n", error_label(study.reference), report::to_text(make_table(study, runs, report::rounded)),
              conclusion(study, runs));
+  if (study.reference.within > 0) fmt::print("{}", comparable(study, runs));
   fmt::print("{}\n", write_files(study, runs, folder));
   if (interrupted()) return kInterrupted;
   for (const StudyRun& run : runs)

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "apps/report/closed_forms.hpp"
+#include "tape/math/rotation.hpp"
 
 namespace tape::tapesim {
 namespace {
@@ -74,6 +76,24 @@ Real kendall_error(const World& world, const cosim::RunLog& log, Real angle) {
   throw InputError("kendall: nothing was peeled");
 }
 
+/// The hub of the first roll at equal times over the run.
+void follow_hub(const World& world, const cosim::RunLog& log, Measured& measured) {
+  constexpr int kTimes = 500;
+  if (const std::string why = cosim::why_unfit("hub_travel", world); !why.empty()) throw InputError("measure = hub_path: " + why);
+  const auto hub =
+      static_cast<std::size_t>(std::find_if(world.setup.scene.strips.begin(), world.setup.scene.strips.end(), [](const Strip& s) {
+                                 return s.winding.has_value();
+                               })->winding->hub);
+  std::size_t row = 0;
+  for (int k = 1; k <= kTimes; ++k) {
+    const Real time = log.start.time + (log.rows.back().time - log.start.time) * k / kTimes;
+    while (row + 1 < log.rows.size() && log.rows[row].time < time - 1e-9) ++row;
+    const Pose& pose = log.rows[row].report.body_pose[hub];
+    measured.points.push_back(pose.position);
+    measured.turns.push_back(rotation_log(pose.rotation));
+  }
+}
+
 Real figure_value(const std::string& key, const World& world, const cosim::RunLog& log) {
   std::vector<std::string> names;
   for (const cosim::Figure& figure : cosim::all_figures())
@@ -83,7 +103,7 @@ Real figure_value(const std::string& key, const World& world, const cosim::RunLo
     if (name == key) return value;
     known += (known.empty() ? "" : ", ") + name;
   }
-  throw InputError("measure = " + key + ": the scene has no such figure; it has state, " + known);
+  throw InputError("measure = " + key + ": the scene has no such figure; it has state, hub_path, " + known);
 }
 }  // namespace
 
@@ -98,7 +118,10 @@ Measured measure(const Reference& reference, const World& world, const cosim::Ru
     measured.error = kendall_error(world, log, reference.angle);
   } else if (reference.measure == "state") {
     if (world.assembly.strips.empty()) throw InputError("measure = state: the scene has no strip");
-    measured.middle_line = cosim::middle_line(world, log.end, 101);
+    measured.points = cosim::middle_line(world, log.end, 101);
+  } else if (reference.measure == "hub_path") {
+    follow_hub(world, log, measured);
+    measured.value = figure_value("hub_range_deg", world, log);
   } else {
     measured.value = figure_value(reference.measure, world, log);
   }
@@ -106,10 +129,20 @@ Measured measure(const Reference& reference, const World& world, const cosim::Ru
 }
 
 Real distance(const Reference& reference, const Measured& run, const Measured& finest) {
-  if (reference.measure != "state") return std::abs(run.value - finest.value);
-  Real most = 0;
-  for (std::size_t i = 0; i < run.middle_line.size(); ++i) most = std::max(most, (run.middle_line[i] - finest.middle_line[i]).norm());
-  return most;
+  if (finest.points.empty()) return std::abs(run.value - finest.value);
+  Real most = 0, sum = 0;
+  for (std::size_t i = 0; i < run.points.size(); ++i) {
+    const Real apart = (run.points[i] - finest.points[i]).norm();
+    most = std::max(most, apart), sum += apart * apart;
+  }
+  return reference.measure == "state" ? most : std::sqrt(sum / static_cast<Real>(run.points.size()));
+}
+
+Real turn_distance(const Measured& run, const Measured& finest) {
+  Real sum = 0;
+  for (std::size_t i = 0; i < run.turns.size(); ++i)
+    sum += rotation_log(rotation_exp(run.turns[i]) * rotation_exp(finest.turns[i]).transpose()).squaredNorm();
+  return run.turns.empty() ? 0 : std::sqrt(sum / static_cast<Real>(run.turns.size())) * 180 / std::numbers::pi;
 }
 
 std::string error_label(const Reference& reference) {
@@ -123,7 +156,8 @@ std::string error_label(const Reference& reference) {
     case Reference::Kind::finest:
       break;
   }
-  return reference.measure == "state" ? "largest distance of middle lines from the finest run [m]"
-                                      : "difference of " + reference.measure + " from the finest run";
+  if (reference.measure == "state") return "largest distance of middle lines from the finest run [m]";
+  if (reference.measure == "hub_path") return "RMS distance of the hub's centre from the finest run [m]";
+  return "difference of " + reference.measure + " from the finest run";
 }
 }  // namespace tape::tapesim

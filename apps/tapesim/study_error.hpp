@@ -7,12 +7,15 @@ namespace tape::tapesim {
 struct Measured {
   Real error = 0;                   ///< against a closed form
   Real value = 0;                   ///< of the figure, for the comparison with the finest run
-  std::vector<Vec3> middle_line{};  ///< [m] the same, for the comparison of states
+  std::vector<Vec3> points{};       ///< [m] the same: of the middle line, or of the hub's centre at equal times
+  std::vector<Vec3> turns{};        ///< [rad] rotation vectors of the hub at these times
 };
 /// @throws InputError if the scene has not what the reference is about
 Measured measure(const Reference& reference, const World& world, const cosim::RunLog& log);
-/// Error of a run against the finest one: |difference| of figures, or largest distance [m] of middle lines.
+/// Error of a run against the finest one: |difference| of figures, largest distance [m] of middle lines, or RMS distance [m] of the hub.
 Real distance(const Reference& reference, const Measured& run, const Measured& finest);
+/// RMS angle [deg] between the orientations of the hub.
+Real turn_distance(const Measured& run, const Measured& finest);
 /// What `error` means, with its unit.
 std::string error_label(const Reference& reference);
 }  // namespace tape::tapesim

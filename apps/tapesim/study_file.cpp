@@ -16,6 +16,11 @@ Reference read_reference(const cosim::SceneFile& file, const std::vector<std::st
     if (!finest.flag()) finest.fail("can only be true");
     reference.measure = file["measure"].text_or("state");
     for (const cosim::Reader& key : against["of_each"].items()) reference.of_each.push_back(cosim::choose(key, grid_keys));
+    if (const cosim::Reader within = against["within"]) {
+      if (reference.figure().empty()) within.fail("needs a figure to measure");
+      reference.within = within.number(Range::above(0, 1), "");
+      reference.each = cosim::choose(against["each"], grid_keys);
+    }
     return reference;
   }
   reference.kind = static_cast<Reference::Kind>(cosim::choose(form, {"heavy_elastica", "capstan", "kendall"}));

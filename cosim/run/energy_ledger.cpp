@@ -53,7 +53,7 @@ EnergyLedger::Entry EnergyLedger::after(const State& state, const StepReport& re
     first_energies_ = energies;
     first_energy_ = report.kinetic;
   } else {
-    work_ += grip_work_ + body_work(state) + report.adhesion_work + report.woken;
+    work_ += grip_work_ + body_work(state) + report.adhesion_work + report.woken + report.axle_work;
   }
   Entry entry{.work = work_};
   Real about = report.kinetic + std::abs(work_);

@@ -10,7 +10,7 @@ class EnergyLedger {
  public:
   struct Entry {
     Real potential = 0;  ///< [J] of all conservative effects, from the first step on
-    Real work = 0;       ///< [J] put in by grips, driven bodies and adhesion that renews itself, since the first step
+    Real work = 0;       ///< [J] put in by grips, driven bodies, axles and adhesion that renews itself, since the first step
     Real balance = 0;    ///< [J] kinetic + potential - work, since the first step; positive: energy from nowhere
     Real scale = 0;      ///< [J] largest energy that has been about since the first step
   };

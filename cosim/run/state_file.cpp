@@ -8,7 +8,7 @@
 
 namespace cosim {
 namespace {
-constexpr const char* kFormat = "tape states 2";
+constexpr const char* kFormat = "tape states 3";
 
 /// Matrices of equal size, one after the other.
 template <class T, class M>
@@ -67,8 +67,10 @@ bool consistent(const RecordedMesh& mesh) {
 }
 bool consistent(const RecordedFrame& frame, const RecordedMesh& mesh) {
   const auto finite = [](const auto& value) { return value.allFinite(); };
+  const auto known = [](TapePart part) { return part >= TapePart::free && part <= TapePart::cluster; };
   return std::ssize(frame.x) == mesh.strip_vertices && std::ssize(frame.bodies) == body_count(mesh) &&
          frame.contact_force.size() == mesh.body.size() && frame.engagement.size() == frame.x.size() &&
+         frame.part.size() == frame.x.size() && std::all_of(frame.part.begin(), frame.part.end(), known) &&
          std::all_of(frame.x.begin(), frame.x.end(), finite) &&
          std::all_of(frame.bodies.begin(), frame.bodies.end(), [&](const Pose& X) { return finite(X.rotation) && finite(X.position); });
 }
@@ -106,7 +108,8 @@ RecordedFrame RecordedFrame::of(const World& world, const State& state, std::vec
                       .x = state.x,
                       .bodies = {},
                       .contact_force = std::move(contact_force),
-                      .engagement = vertex_engagement(world, state)};
+                      .engagement = vertex_engagement(world, state),
+                      .part = tape_parts(world, state)};
   for (int b = 0; b < world.first_cluster(); ++b) frame.bodies.push_back(state.bodies[static_cast<std::size_t>(b)].pose);
   frame.contact_force.resize(static_cast<std::size_t>(world.assembly.surface_vertices), 0);
   return frame;
@@ -151,7 +154,12 @@ void StateWriter::add(const RecordedFrame& frame) {
     file_.append(name, std::vector<float>(values.begin(), values.end()), {values.size()});
   };
   append("contact_force", frame.contact_force);
-  if (!frame.x.empty()) append("engagement", frame.engagement);
+  if (!frame.x.empty()) {
+    append("engagement", frame.engagement);
+    std::vector<int> parts;
+    for (TapePart part : frame.part) parts.push_back(static_cast<int>(part));
+    file_.append("part", parts, {parts.size()});
+  }
   file_.reserve();
 }
 
@@ -176,10 +184,12 @@ RecordedFrame StateReader::frame(int i) const {
                       .x = {},
                       .bodies = {},
                       .contact_force = {},
-                      .engagement = {}};
+                      .engagement = {},
+                      .part = {}};
   if (mesh_.strip_vertices > 0) {
     frame.x = unflat<Vec3>(file_.read_row("x", i));
     frame.engagement = file_.read_row("engagement", i);
+    for (Real part : file_.read_row("part", i)) frame.part.push_back(static_cast<TapePart>(static_cast<int>(part)));
   }
   const std::vector<double> poses = body_count(mesh_) > 0 ? file_.read_row("pose", i) : std::vector<double>();
   for (std::size_t p = 0; p + 12 <= poses.size(); p += 12) {

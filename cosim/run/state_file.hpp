@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cosim/run/hdf5_file.hpp"
-#include "tape/step/world.hpp"
+#include "tape/step/reduce.hpp"
 
 namespace cosim {
 using namespace tape;
@@ -23,7 +23,7 @@ struct RecordedMesh {
   std::vector<int> body;    ///< [nv] body that carries the vertex, -1: a strip
   std::vector<Vec3> local;  ///< [nv] m, in frame B; zero on strips
   int strip_vertices = 0;   ///< the first ones
-  std::string camera;       ///< `camera` section of the scene, as text; may be empty
+  std::string camera;       ///< `camera` section of the scene, as YAML text; may be empty
 
   static RecordedMesh of(const World& world, std::string camera);
 };
@@ -34,6 +34,7 @@ struct RecordedFrame {
   std::vector<Pose> bodies;         ///< [bodies] X_WB
   std::vector<Real> contact_force;  ///< [nv] N, kept to 7 digits
   std::vector<Real> engagement;     ///< [strip vertices] what adhesion is left (vertex_engagement), kept to 7 digits
+  std::vector<TapePart> part;       ///< [strip vertices]
 
   static RecordedFrame of(const World& world, const State& state, std::vector<Real> contact_force);
 };
@@ -42,7 +43,7 @@ std::vector<Vec3> vertex_positions(const RecordedMesh& mesh, const RecordedFrame
 
 /// Writes state.h5. Arrays: triangles [nt,3], rest [nv,2] m, body [nv], local [nv,3] m, objects [n,3] (first triangle, triangles, 1 for
 /// a strip); and per frame: step, time [s], x [strip vertices,3] m, pose [bodies,12] (rotation row by row, position), contact_force [nv] N,
-/// engagement [strip vertices].
+/// engagement [strip vertices], part [strip vertices] (0 free, 1 collar, 2 cluster).
 class StateWriter {
  public:
   StateWriter(const std::filesystem::path& name, const RecordedMesh& mesh);

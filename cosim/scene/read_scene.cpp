@@ -34,6 +34,7 @@ class SceneReader {
     bodies();
     for (const Reader& entry : file_["interfaces"].items()) interface(entry);
     model();
+    for (const Reader& entry : file_["axles"].items()) axle(entry);
     read_script(file_["script"], meshes_, scene_);
     if (scene_.strips.empty() && scene_.bodies.empty()) file_.root().fail("there is nothing to simulate: neither a strip nor a body");
     return std::move(scene_);
@@ -158,6 +159,28 @@ class SceneReader {
       scene_.bodies.push_back(read_body(body, name, file_.path()));
       scene_.bodies.back().material = material(body["material"].text_or("default"));
     }
+  }
+
+  void axle(const Reader& entry) {
+    std::vector<std::string> names;
+    for (const tape::Body& body : scene_.bodies) names.push_back(body.name);
+    if (names.empty()) entry.fail("the scene has no body");
+    tape::AxleJoint axle;
+    const tape::Body& body = scene_.bodies[choose(entry["body"], names)];
+    if (body.motion != tape::Motion::dynamic) entry["body"].fail("is not dynamic: it cannot turn");
+    axle.body = body.name;
+    if (const Reader to = entry["to"]) {
+      axle.to = names[choose(to, names)];
+      if (axle.to == axle.body) to.fail("a body cannot turn on itself");
+    }
+    for (const tape::AxleJoint& other : scene_.axles)
+      if (other.body == axle.body) entry["body"].fail("has an axle already");
+    axle.point = entry["point"].vector_or(axle.point, kPlace, "m");
+    axle.axis = entry["axis"].vector_or(axle.axis, kPlace, "");
+    if (!(axle.axis.norm() > 0)) entry["axis"].fail("has no direction");
+    entry.read(axle.params);
+    if (axle.params.speed != 0 && axle.params.torque == 0) entry["speed"].fail("never acts: torque = 0");
+    scene_.axles.push_back(axle);
   }
 
   /// Friction and adhesion between two things, each a material or an object. A later entry of the list overrides an earlier one.

@@ -129,9 +129,33 @@ void add_grip(Assembly& a, const Scene& scene, const Grip& grip) {
   a.grips.push_back(std::move(part));
 }
 
-/// Stiffness [N/m] of a grip that names none: the weight of all that moves shifts it by ten micrometres, and pulling on a strip stretches
-/// the strip a hundred times as much. Stiffer, what a stop rule leaves of the positions would read as newtons, and a grip that moves by
-/// centimetres in a step would press what is in its way to gaps of nanometres before the rest of the scene gives way.
+/// @throws InputError if there is no such body, or it cannot turn
+void add_axle(Assembly& a, const Scene& scene, const AxleJoint& axle) {
+  const std::string name = "axle of '" + axle.body + "'";
+  const int body = index_of(scene, axle.body), to = axle.to.empty() ? -1 : index_of(scene, axle.to);
+  if (body < 0) throw InputError(name + ": no body has this name");
+  if (!axle.to.empty() && to < 0) throw InputError(name + ": no body is named '" + axle.to + "'");
+  const Body& turning = at(scene.bodies, body);
+  if (turning.motion != Motion::dynamic) throw InputError(name + ": the body is not dynamic");
+  Real reach = 0;
+  for (const Vec3& y : turning.mesh.vertices) reach = std::max(reach, (y - axle.point).norm());
+  const Vec3 u = axle.axis.normalized(), arm = u.unitOrthogonal();
+  const Vec3 first = axle.point - reach * u;
+  const auto on_body = [&](const Vec3& y) { return add_marker(a, body, apply(turning.pose, y)); };
+  const auto on_base = [&](const Vec3& y) {
+    const Vec3 x = apply(turning.pose, y);
+    return to < 0 ? add_vertex(a, x, {-1, -1}) : add_marker(a, to, x);
+  };
+  a.axles.push_back({.end = {on_body(first), on_body(axle.point + reach * u)},
+                     .seat = {on_base(first), on_base(axle.point + reach * u)},
+                     .arm = on_body(first + reach * arm),
+                     .dial = {on_base(first + reach * arm), on_base(first + reach * u.cross(arm))},
+                     .stiffness = axle.params.stiffness});
+}
+
+/// Stiffness [N/m] of a grip or axle that names none: the weight of all that moves shifts it by ten micrometres, and pulling on a strip
+/// stretches the strip a hundred times as much. Stiffer, what a stop rule leaves of the positions would read as newtons, and a grip that
+/// moves by centimetres in a step would press what is in its way to gaps of nanometres before the rest of the scene gives way.
 Real default_stiffness(const Assembly& a, const Scene& scene) {
   Real total = 0, strip = 0;
   for (Real m : a.mass) total += m;
@@ -145,6 +169,8 @@ Real default_stiffness(const Assembly& a, const Scene& scene) {
 void choose_stiffness(Assembly& a, const Scene& scene) {
   for (Assembly::GripPart& grip : a.grips)
     if (grip.stiffness == 0) grip.stiffness = default_stiffness(a, scene) / static_cast<Real>(grip.vertices.size());
+  for (Assembly::AxlePart& axle : a.axles)
+    if (axle.stiffness == 0) axle.stiffness = default_stiffness(a, scene);
 }
 }  // namespace
 
@@ -174,6 +200,7 @@ Assembly assemble(const Scene& scene) {
     a.mass[static_cast<std::size_t>(a.bodies[b].centre)] = a.bodies[b].mass.mass;
   }
   for (const Grip& grip : scene.grips) add_grip(a, scene, grip);
+  for (const AxleJoint& axle : scene.axles) add_axle(a, scene, axle);
   choose_stiffness(a, scene);
   return a;
 }

@@ -52,6 +52,14 @@ struct Assembly {
     Real stiffness;  ///< [N/m] of each spring
   };
   std::vector<GripPart> grips;
+  /// Markers of a revolute joint. Its ends stand on the body, as far apart as the body is large, its seats where they are on what the body
+  /// turns on. From the first end an arm stands off the axis, and from the first seat two dials: one where the arm is, one a right angle
+  /// on.
+  struct AxlePart {
+    int end[2], seat[2], arm, dial[2];
+    Real stiffness;  ///< [N/m] of the hold on each end
+  };
+  std::vector<AxlePart> axles;
   int cluster_body(int strip) const;  ///< body that is the cluster of a strip, -1 if it is not reduced
 };
 

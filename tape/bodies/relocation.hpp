@@ -66,19 +66,24 @@ TAPE_HD void relocate_hessian(const Relocation<K>& r, const VecN<3 * K>& g, cons
   }
   for (int p = 0; p < m * (m + 1) / 2; ++p) out[p] = Mat3::Zero();
   for (int i = 0; i < K; ++i) {
+    const int a = r.slot[i];
+    if (a < 0) continue;
+    Mat3 row[2 * K];  // of H J
+    for (int b = 0; b < m; ++b) row[b] = Mat3::Zero();
     for (int j = 0; j < K; ++j) {
-      const int a = r.slot[i], b = r.slot[j];
-      if (a < 0 || b < 0) continue;
+      if (r.slot[j] < 0) continue;
       const Mat3 h = H.template block<3, 3>(3 * i, 3 * j);
-      if (a <= b) out[pair_slot(a, b, m)] += h;
-      if (r.rigid[j] && a <= b + 1) out[pair_slot(a, b + 1, m)] += -h * skew(r.arm[j]);
-      if (r.rigid[i] && a + 1 <= b) out[pair_slot(a + 1, b, m)] += skew(r.arm[i]) * h;
-      if (r.rigid[i] && r.rigid[j] && a + 1 <= b + 1) out[pair_slot(a + 1, b + 1, m)] += -skew(r.arm[i]) * h * skew(r.arm[j]);
+      row[r.slot[j]] += h;
+      if (r.rigid[j])
+        for (int c = 0; c < 3; ++c) row[r.slot[j] + 1].row(c) += r.arm[j].cross(Vec3(h.row(c).transpose())).transpose();
     }
-    if (exact && r.slot[i] >= 0 && r.rigid[i]) {
-      const Vec3 gi = g.template segment<3>(3 * i), y = r.arm[i];
-      out[pair_slot(r.slot[i] + 1, r.slot[i] + 1, m)] += 0.5 * (gi * y.transpose() + y * gi.transpose()) - gi.dot(y) * Mat3::Identity();
-    }
+    for (int b = a; b < m; ++b) out[pair_slot(a, b, m)] += row[b];
+    if (!r.rigid[i]) continue;
+    for (int b = a + 1; b < m; ++b)
+      for (int c = 0; c < 3; ++c) out[pair_slot(a + 1, b, m)].col(c) += r.arm[i].cross(Vec3(row[b].col(c)));
+    if (!exact) continue;
+    const Vec3 gi = g.template segment<3>(3 * i), y = r.arm[i];
+    out[pair_slot(a + 1, a + 1, m)] += 0.5 * (gi * y.transpose() + y * gi.transpose()) - gi.dot(y) * Mat3::Identity();
   }
 }
 

@@ -84,7 +84,7 @@ struct Bonds {
   /// Bonds form where the vertex stands over the face, within reach and not pressed below the floor.
   TAPE_HD bool begin(const ContactPair& pair, const StateView& s, Memory& out) const {
     const Adhesion& a = s.adhesion[pair.interface];
-    if (a.law != of_law) return false;
+    if (a.law != of_law || far_apart(pair, s.x, pair.xi + a.bond.reach * dhat)) return false;
     const PairState p = PairState::at(pair, s.x);
     const Real gap = (p.d - pair.xi) / dhat;
     constexpr Real kFlat = 1e-6;  // [m] a tetrahedron that is no higher has no shape to remember

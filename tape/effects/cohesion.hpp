@@ -96,7 +96,7 @@ struct Cohesion {
   /// Whether a pair is remembered that was not before, at the end of a step.
   TAPE_HD bool begin(const ContactPair& pair, const StateView& s, Memory& out) const {
     const Adhesion& a = s.adhesion[pair.interface];
-    if (pair.kind != PairKind::vertex_triangle || a.law != of_law) return false;
+    if (pair.kind != PairKind::vertex_triangle || a.law != of_law || far_apart(pair, s.x, pair.xi + dhat)) return false;
     const PairState p = PairState::at(pair, s.x);
     if (!(p.d < pair.xi + dhat) || !adheres(a, pair, p, s)) return false;
     const Real grown = s.dt * rate(a.pair, pair.xi, 0, p.d, 0);

@@ -2,6 +2,8 @@
 #include <tuple>
 #include <type_traits>
 
+#include "tape/effects/axle.hpp"
+#include "tape/effects/axle_torque.hpp"
 #include "tape/effects/barrier.hpp"
 #include "tape/effects/bending.hpp"
 #include "tape/effects/body_drive.hpp"
@@ -18,8 +20,8 @@
 namespace tape {
 /// The one list of effects. Reading and writing scenes, checks, assembly on both back ends, timing, reports and the tests that hold
 /// for all of them follow from it.
-using Effects =
-    std::tuple<Inertia, BodyInertia, BodyDrive, Gravity, Membrane, Bending, Barrier, Friction, Cohesion, CohesiveZone, Bonds, Tether>;
+using Effects = std::tuple<Inertia, BodyInertia, BodyDrive, Gravity, Membrane, Bending, Barrier, Friction, Cohesion, CohesiveZone, Bonds,
+                           Tether, Axle, AxleTorque>;
 
 /// The settings of one effect, told apart by the effect even where two have none.
 template <class T>

@@ -1,11 +1,12 @@
 #pragma once
 #include "tape/effects/barrier.hpp"
+#include "tape/effects/coulomb.hpp"
 #include "tape/effects/lagged_slip.hpp"
 
 namespace tape {
 /// Coulomb friction, smoothed and lagged [Li 2020]. At the start of a step each pair in contact fixes its normal force lambda_n; a slip u
 /// (LaggedSlip) then costs
-///   E = mu lambda_n f0(|u|),   f0(y) = y for y >= eps, else -y^3/(3 eps^2) + y^2/eps + eps/3,   eps = eps_v dt.
+///   E = mu lambda_n f0(|u|)   (Coulomb),   eps = eps_v dt.
 /// Below the speed eps_v a contact creeps instead of sticking. Pairs of nearly parallel edges are left out: their vertices' pairs carry the
 /// force.
 struct Friction {
@@ -45,6 +46,7 @@ struct Friction {
   TAPE_HD bool lag(const ContactPair& pair, const StateView& s, Element& out) const {
     const Real mu = s.mu[pair.interface];
     if (!(mu > 0)) return false;
+    if (far_apart(pair, s.x, pair.xi + pair.dhat)) return false;
     const PairState p = PairState::at(pair, s.x);
     if (!Barrier::reaches(p, pair) || p.fade.slope != 0) return false;
     const Real force = barrier.normal_force(p, pair);
@@ -57,15 +59,10 @@ struct Friction {
     return {{v[0], v[1], v[2], v[3]}};
   }
   TAPE_HD Vec2 slip(const StateView& s, int i) const { return elements[i].lagged.slip(frame, s); }
-  TAPE_HD Real energy(const StateView& s, int i) const {
-    const Real y = slip(s, i).norm(), eps = eps_v * s.dt;
-    return elements[i].limit * (y >= eps ? y : y * y / eps * (1 - y / (3 * eps)) + eps / 3);
-  }
-  /// f0'(y) / y [1/m].
-  TAPE_HD static Real secant(Real y, Real eps) { return y >= eps ? 1 / y : (2 - y / eps) / eps; }
+  TAPE_HD Real energy(const StateView& s, int i) const { return elements[i].limit * law(s).value(slip(s, i).norm()); }
   TAPE_HD VecN<12> gradient(const StateView& s, int i) const {
     const Vec2 u = slip(s, i);
-    return elements[i].lagged.slope(frame, s) * (elements[i].limit * secant(u.norm(), eps_v * s.dt) * u);
+    return elements[i].lagged.slope(frame, s) * (elements[i].limit * law(s).secant(u.norm()) * u);
   }
   /// In the slip positive semidefinite as it is: f0 is convex. But it is flat along a slip beyond eps and does not see that f0 turns at
   /// slip 0. Where Newton overshoots, the secant f0'(y)/y stands in for both directions: the parabola through y that lies above f0
@@ -73,14 +70,17 @@ struct Friction {
   TAPE_HD MatN<12, 12> hessian(const StateView& s, int i, HessianMode mode) const {
     const Element& e = elements[i];
     const Vec2 u = slip(s, i);
-    const Real y = u.norm(), eps = eps_v * s.dt, pull = secant(y, eps);
+    const Real y = u.norm(), pull = law(s).secant(y);
     Mat2 m = pull * Mat2::Identity();
-    if (!s.overshot && y > 0) m -= Mat2(u * u.transpose()) * (y >= eps ? 1 / (y * y * y) : 1 / (y * eps * eps));
+    if (!s.overshot && y > 0) m -= Mat2(u * u.transpose()) * (law(s).bend(y) / (y * y));
     const MatN<12, 2> J = e.lagged.slope(frame, s);
     MatN<12, 12> h = e.limit * J * m * J.transpose();
     if (mode == HessianMode::exact && !s.overshot) e.lagged.add_curvature(frame, s, e.limit * pull * u, h);
     return h;
   }
+
+ private:
+  TAPE_HD Coulomb law(const StateView& s) const { return {eps_v * s.dt}; }
 };
 static_assert(Effect<Friction>);
 }  // namespace tape

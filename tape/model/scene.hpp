@@ -152,6 +152,26 @@ struct Grip {
   std::vector<Key> motion;  ///< times ascending, linear between; holds still before and after
 };
 
+struct AxleParams {
+  Real torque = 0;
+  Real speed = 0;
+  Real stiffness = 0;
+  template <class F>
+  void fields(F&& f) {
+    f("torque", torque, "N m", Range::closed(0, 1e6), "most that the axle exerts about its axis: friction, or the limit of its drive");
+    f("speed", speed, "rad/s", Range::closed(-1e4, 1e4), "that its drive turns the body with; 0: none");
+    f("stiffness", stiffness, "N/m", Range::closed(0, 1e12), "of its hold on each end; 0: chosen from the masses and strips of the scene");
+  }
+};
+/// A revolute joint: a body turns on another one, or on the world.
+struct AxleJoint {
+  std::string body;
+  std::string to;             ///< body that it turns on; empty: the world
+  Vec3 point = Vec3::Zero();  ///< [m] on the axis, in the frame of the body's mesh
+  Vec3 axis = Vec3::UnitZ();  ///< in the frame of the body's mesh
+  AxleParams params;
+};
+
 /// Input of a simulation, plain and complete, in SI units. cosim/scene fills it from a file.
 struct Scene {
   std::string name;
@@ -168,6 +188,7 @@ struct Scene {
   std::vector<FrictionPair> frictions;
   std::vector<AdhesivePair> adhesives;
   std::vector<Grip> grips;
+  std::vector<AxleJoint> axles;
 
   Real dhat() const;                               ///< [m] contact.dhat, or the smallest of the films' (1e-3 without strips)
   Real mu(int a, int b) const;                     ///< friction of two materials

@@ -26,6 +26,19 @@ void add_grip_forces(const World& world, const State& after, Real dt, StepReport
     report.grip_force.push_back(force);
   }
 }
+void add_axle_torques(const World& world, const State& before, const State& after, Real dt, StepReport& report) {
+  const std::vector<Vec3> start = vertex_positions(world, before), end = vertex_positions(world, after);
+  StateView s{};
+  s.dt = dt;
+  s.x = {end.data(), static_cast<int>(end.size())}, s.x_start = {start.data(), static_cast<int>(start.size())};
+  std::vector<AxleTorque::Element> elements;
+  AxleTorque term = AxleTorque::build(world.setup.scene, world.assembly, params<AxleTorque>(world.setup.effects), elements);
+  term.elements = {elements.data(), static_cast<int>(elements.size())};
+  for (int i = 0; i < term.elements.size; ++i) {
+    report.axle_torque.push_back(term.torque(s, i));
+    report.axle_work += report.axle_torque.back() * (term.slip(s, i) + elements[static_cast<std::size_t>(i)].speed * dt);
+  }
+}
 }  // namespace
 
 void finish_body(const BodyMass& mass, const Pose& pose, const Pose& target, Real dt, BodyState& body) {
@@ -54,6 +67,7 @@ void finish_step(const World& world, const Carriage& carriage, const State& befo
     report.angular_momentum += mass.mass * body.pose.position.cross(body.velocity) + body.angular_momentum;
   }
   add_grip_forces(world, after, dt, report);
+  if (!world.assembly.axles.empty()) add_axle_torques(world, before, after, dt, report);
 }
 
 std::vector<Real> vertex_contact_force(const World& world, const std::vector<ContactPair>& pairs, const std::vector<Vec3>& x) {

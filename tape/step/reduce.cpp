@@ -95,6 +95,19 @@ void form_cluster(const World& world, State& state) {
     for (std::size_t k = 0; k < state.clusters.size(); ++k) put_to_sleep(world, place_of(world, k), state);
 }
 
+std::vector<TapePart> tape_parts(const World& world, const State& state) {
+  std::vector<TapePart> parts(state.x.size(), TapePart::free);
+  for (std::size_t k = 0; k < state.clusters.size(); ++k) {
+    const Place at = place_of(world, k);
+    const Cluster& cluster = state.clusters[k];
+    const std::vector<bool> member = members(world.assembly, at.strip, cluster, collar(world));
+    for (std::size_t v = 0; v < member.size(); ++v)
+      if (member[v] || (*cluster.distance)[v] > 0)
+        parts[static_cast<std::size_t>(at.strip.first_vertex) + v] = member[v] ? TapePart::cluster : TapePart::collar;
+  }
+  return parts;
+}
+
 bool advance_fronts(const World& world, const Carriage& carriage, const State& before, State& after) {
   bool moved = false;
   for (std::size_t k = 0; k < after.clusters.size(); ++k) {

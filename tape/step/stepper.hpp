@@ -62,6 +62,8 @@ struct StepReport {
   Real woken = 0;          ///< [J] stored in what woke when clusters lost members, at the end
   std::vector<AdhesionReport> adhesion;  ///< [Scene::adhesives]
   std::vector<Vec3> grip_force;          ///< [grips] N that the grip exerts on what it holds
+  std::vector<Real> axle_torque;         ///< [axles] N m that the axle exerts on the body, about its axis
+  Real axle_work = 0;                    ///< [J] of these torques in the step: of drives, less what friction takes
   std::vector<Vec3> body_force;          ///< [bodies] N of contact and grips on the body (driven and dynamic)
   std::vector<Pose> body_pose;           ///< [bodies] X_WB at the end
   Real wall_ms = 0;

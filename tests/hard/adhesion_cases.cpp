@@ -1,6 +1,4 @@
-#include <memory>
 #include <numbers>
-#include <optional>
 
 #include "cosim/roll/settled_roll.hpp"
 #include "cosim/run/read_run.hpp"
@@ -110,13 +108,6 @@ interfaces:
   Setup setup = cosim::read_run(cosim::SceneFile::parse(scene, TAPE_SOURCE_DIR "/data/scenes/frictionless_roll.yaml")).setup;
   cosim::place_roll(cosim::settle_roll(cosim::roll_alone(setup, 0), {}), 0, setup);
   return setup;
-}
-/// A setup that is made once, however often it is run.
-std::function<Setup()> once(const std::function<Setup()>& make) {
-  return [make, made = std::make_shared<std::optional<Setup>>()] {
-    if (!*made) *made = make();
-    return **made;
-  };
 }
 Setup to(Real velocity_tol, Setup setup) {
   setup.newton.velocity_tol = velocity_tol;

@@ -29,8 +29,11 @@ std::vector<HardCase> hard_cases();
 std::vector<HardCase> obstacle_cases();  ///< HC1: spikes, edges, cracks and holes
 std::vector<HardCase> stack_cases();     ///< HC6, HC10, HC12, HC20: stacks, pulls, time steps, mass ratios
 std::vector<HardCase> adhesion_cases();  ///< extreme settings; what is pressed, sheared, twisted, torn and wound
+std::vector<HardCase> reduced_cases();   ///< rolls as clusters: fronts that pass, stall, turn back; falls and spins
 std::vector<HardCase> own_cases();       ///< of the same kind: impact, crumpling, wrapping, rolling
 
+/// A setup that is made once, however often it is run.
+std::function<Setup()> once(const std::function<Setup()>& make);
 /// Strip of `length` and `cells` over the width, flat at height z, its middle at the origin; turned about the vertical.
 Setup dropped_strip(Real length, int cells, Real z, Real turn = 0);
 }  // namespace tape::test

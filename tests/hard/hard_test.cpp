@@ -20,7 +20,7 @@ Simulation run(const HardCase& hard, Real until, bool check, std::vector<std::st
   simulation.may_reach_limits = hard.may_reach_limits;
   Real scale = 0, energy = 1e300, booked = 0;
   simulation.run_to(until, [&](const Simulation& s) {
-    booked += s.report().adhesion_work;
+    booked += s.report().adhesion_work + s.report().woken;
     const Real now = s.energy() - booked;
     scale = std::max(scale, s.energy_scale());
     if (!hard.driven && now > energy + hard.energy_rise * scale)

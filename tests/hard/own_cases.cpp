@@ -1,4 +1,6 @@
+#include <memory>
 #include <numbers>
+#include <optional>
 
 #include "tape/math/rotation.hpp"
 #include "tape/model/primitives.hpp"
@@ -100,6 +102,13 @@ void stands(const Simulation& s, std::vector<std::string>& broken) {
 }
 }  // namespace
 
+std::function<Setup()> once(const std::function<Setup()>& make) {
+  return [make, made = std::make_shared<std::optional<Setup>>()] {
+    if (!*made) *made = make();
+    return **made;
+  };
+}
+
 Setup dropped_strip(Real length, int cells, Real z, Real turn) {
   const Mat3 R = rotation_exp(Vec3(0, 0, turn));
   Setup setup = strip_setup(flat_strip(length, cells, R * Vec3(-length / 2, 0, 0) + Vec3(0, 0, z)));
@@ -134,7 +143,7 @@ std::vector<HardCase> own_cases() {
 
 std::vector<HardCase> hard_cases() {
   std::vector<HardCase> all;
-  for (const auto& group : {obstacle_cases(), stack_cases(), adhesion_cases(), own_cases()})
+  for (const auto& group : {obstacle_cases(), stack_cases(), adhesion_cases(), reduced_cases(), own_cases()})
     all.insert(all.end(), group.begin(), group.end());
   return all;
 }

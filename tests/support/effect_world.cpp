@@ -17,6 +17,7 @@ EffectWorld::EffectWorld(unsigned seed) : generator_(seed) {
   add_pairs();
   add_samples();
   add_grips();
+  add_axles();
   disturb();
 }
 
@@ -87,6 +88,18 @@ void EffectWorld::add_grips() {
   assembly.grips = {{{0, 1}, {-1, -1}, 100}, {{2}, anchor, 50}};
   grip_stiffness = {100, 0, 50};  // the second spring is open
   for (int k = 0; k < 3; ++k) grip_target.push_back(random_vector(0.01));
+}
+
+/// One with a slow drive, one that slips far behind a fast one.
+void EffectWorld::add_axles() {
+  for (const AxleParams& params : {AxleParams{.torque = 0.5, .speed = 0.02, .stiffness = 70}, AxleParams{.torque = 0.3, .speed = -8}}) {
+    const Vec3 foot = random_vector(0.01);
+    const Mat3 R = 0.01 * rotation_exp(random_vector(3));
+    const auto add = [&](const Vec3& from_foot) { return add_vertices({foot + R * from_foot})[0]; };
+    const Vec3 none = Vec3::Zero(), end = Vec3::UnitZ(), along = Vec3::UnitX(), across = Vec3::UnitY();
+    scene.axles.push_back({.body = "drum", .to = "arm", .params = params});
+    assembly.axles.push_back({{add(none), add(end)}, {add(none), add(end)}, add(along), {add(along), add(across)}, params.stiffness});
+  }
 }
 
 void EffectWorld::add_pairs() {

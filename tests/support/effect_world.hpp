@@ -47,6 +47,7 @@ class EffectWorld {
   void add_strip();
   void add_bodies();
   void add_grips();
+  void add_axles();
   void add_pairs();
   void add_samples();
   void disturb();

@@ -26,6 +26,16 @@ TEST(Picture, APngHoldsThePixelsItWasGiven) {
   fs::remove(path);
 }
 
+TEST(Picture, SideBySideEachKeepsItsPixels) {
+  Picture left(2, 2), right(1, 2);
+  left.at(1, 1)[0] = 10, right.at(0, 1)[2] = 20;
+  const Picture both = side_by_side({left, right});
+  EXPECT_EQ(both.width, 3);
+  EXPECT_EQ(both.height, 2);
+  EXPECT_EQ(both.at(1, 1)[0], 10);
+  EXPECT_EQ(both.at(2, 1)[2], 20);
+}
+
 TEST(Picture, AFileThatCannotBeWrittenIsNamedAndNothingIsLeft) {
   const fs::path path = fs::temp_directory_path() / "no such folder" / "a.png";
   try {

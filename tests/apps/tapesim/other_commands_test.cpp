@@ -101,7 +101,12 @@ TEST_F(StudyCommand, AgainstAClosedFormPrintsATableAndLeavesCsvAndPlots) {
   const std::string study = folder.file("study.yaml", std::string(kStudy) + "against: {closed_form: heavy_elastica}\n");
   const Outcome outcome = tapesim({"study", study, "--out", (folder / "out").string()});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(folder.names("out"), testing::ElementsAre("study.csv", "study.png", "study.svg"));
+  EXPECT_THAT(folder.names("out"), testing::ElementsAre("runs.json", "study.csv", "study.png", "study.svg"));
+  const std::string first = read(folder / "out" / "study.csv");
+  EXPECT_EQ(tapesim({"study", study, "--out", (folder / "out").string()}).exit_code, 0);
+  EXPECT_EQ(read(folder / "out" / "study.csv"), first) << "to the microsecond: nothing was run again";
+  EXPECT_EQ(tapesim({"study", study, "--out", (folder / "out").string(), "--set", "seed=2"}).exit_code, 0);
+  EXPECT_NE(read(folder / "out" / "study.csv"), first);
   std::istringstream csv(read(folder / "out" / "study.csv"));
   std::string line;
   std::getline(csv, line);
@@ -192,6 +197,11 @@ TEST_F(Render, MakesStillsAndAVideoFromAnyCameraAndRefusesWhatIsNotThere) {
   EXPECT_EQ(with({"--still", "0", "--still", "-1", "--color", "strain"}).exit_code, 0);
   EXPECT_EQ(with({"--still", "1", "--camera", look, "--color", "contact_force"}).exit_code, 0);
   EXPECT_EQ(with({"--camera", pinhole}).exit_code, 0);
+  const std::string two =
+      folder.file("two.yaml", "camera: [{eye: [0.1, -0.2, 0.1], follow: tape.tip}, {eye: [0, -0.3, 0], follow: tape}]\n");
+  EXPECT_EQ(with({"--still", "2", "--camera", two, "--color", "part", "--track", "0.01"}).exit_code, 0);
+  for (const char* bad : {"camera: {eye: [0, -1, 0], follow: moon}\n", "camera: [{fx: 200, fy: 200}, {eye: [0, -1, 0]}]\n"})
+    EXPECT_EQ(with({"--still", "0", "--camera", folder.file("bad.yaml", bad)}).exit_code, 2) << bad;
   EXPECT_THAT(folder.names("a"), IsSupersetOf({"still_-1.png", "still_0.png", "still_1.png", "video.mp4"}));
   EXPECT_EQ(with({"--still", "99"}).exit_code, 2);
   EXPECT_EQ(with({"--camera", (folder / "none.yaml").string()}).exit_code, 2);

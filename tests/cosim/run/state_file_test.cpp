@@ -32,7 +32,8 @@ RecordedFrame frame(int step) {
           .x = {Vec3(step, 1, 2), Vec3(3, 4, 5), Vec3(6, 7, 8)},
           .bodies = {quarter_turn_about_z},
           .contact_force = {0.5, 1, 0, 0, 0, 0.25},
-          .engagement = {0, 0.5, 1}};
+          .engagement = {0, 0.5, 1},
+          .part = {tape::TapePart::free, tape::TapePart::collar, tape::TapePart::cluster}};
 }
 
 class StateFile : public testing::Test {
@@ -65,6 +66,7 @@ TEST_F(StateFile, ReadsBackWhatWasWritten) {
   EXPECT_EQ(read.bodies[0].rotation, written.bodies[0].rotation);
   EXPECT_EQ(read.contact_force, written.contact_force);
   EXPECT_EQ(read.engagement, written.engagement);
+  EXPECT_EQ(read.part, written.part);
 }
 TEST_F(StateFile, VerticesOfBodiesFollowTheirPose) {
   const std::vector<Vec3> x = vertex_positions(kMesh, frame(2));

@@ -1,0 +1,37 @@
+#pragma once
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "apps/tapesim/study_error.hpp"
+#include "cosim/run/summary.hpp"
+
+namespace tape::tapesim {
+/// One combination of a study's grid, and what came of it.
+struct StudyRun {
+  std::vector<std::string> values;
+  Real seconds = 0, error = std::numeric_limits<Real>::quiet_NaN();
+  Real turn_error = 0;             ///< [deg] of the hub, where that is measured
+  cosim::Distribution step_ms{};
+  Real newton = 0;  ///< iterations per step
+  int unmet = 0;    ///< conditions
+  bool pareto = false;
+  std::string failure{};
+  Measured measured{};
+
+  bool measurable() const { return failure.empty(); }
+};
+
+/// Keeps the finished runs of a study in a file, so that it goes on where it was interrupted.
+class StudyStore {
+ public:
+  explicit StudyStore(std::filesystem::path file) : file_(std::move(file)) {}
+  /// Fills in `run` if one with this key is kept. @param key  of all that decides its outcome
+  bool find(const std::string& key, StudyRun& run) const;
+  void keep(const std::string& key, const StudyRun& run) const;
+
+ private:
+  std::filesystem::path file_;
+};
+}  // namespace tape::tapesim
