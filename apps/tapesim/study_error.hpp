@@ -5,10 +5,10 @@
 namespace tape::tapesim {
 /// What a run of a study leaves for the comparison.
 struct Measured {
-  Real error = 0;                   ///< against a closed form
-  Real value = 0;                   ///< of the figure, for the comparison with the finest run
-  std::vector<Vec3> points{};       ///< [m] the same: of the middle line, or of the hub's centre at equal times
-  std::vector<Vec3> turns{};        ///< [rad] rotation vectors of the hub at these times
+  Real error = 0;              ///< against a closed form
+  Real value = 0;              ///< of the figure, for the comparison with the finest run
+  std::vector<Vec3> points{};  ///< [m] the same: of the middle line, or of the hub's centre at equal times
+  std::vector<Vec3> turns{};   ///< [rad] rotation vectors of the hub at these times
 };
 /// @throws InputError if the scene has not what the reference is about
 Measured measure(const Reference& reference, const World& world, const cosim::RunLog& log);

@@ -11,7 +11,7 @@ namespace tape::tapesim {
 struct Reference {
   enum class Kind { heavy_elastica, capstan, kendall, finest };
   Kind kind = Kind::finest;
-  Real angle = 0;                      ///< [rad] of contact (capstan) or of the peel (kendall)
+  Real angle = 0;  ///< [rad] of contact (capstan) or of the peel (kendall)
   /// with `finest`: key of a figure; "state" for the largest distance of middle lines [m]; "hub_path" for the RMS distance [m] of the hub
   /// of a roll over the run, beside hub_range_deg
   std::string measure;

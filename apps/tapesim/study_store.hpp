@@ -12,7 +12,7 @@ namespace tape::tapesim {
 struct StudyRun {
   std::vector<std::string> values;
   Real seconds = 0, error = std::numeric_limits<Real>::quiet_NaN();
-  Real turn_error = 0;             ///< [deg] of the hub, where that is measured
+  Real turn_error = 0;  ///< [deg] of the hub, where that is measured
   cosim::Distribution step_ms{};
   Real newton = 0;  ///< iterations per step
   int unmet = 0;    ///< conditions
