@@ -83,17 +83,19 @@ std::vector<std::pair<std::string, Real>> roll_figures(const World& world, const
     mass += roll.mass(v);
     inertia += roll.mass(v) * p.squaredNorm();
   }
-  Real angle = 0, length = 0, radius = 0;
+  Real angle = 0, length = 0, last_turn = 0, radius = 0;
   const std::vector<int> edge = roll.edge(end);
-  for (std::size_t k = 1; k < edge.size(); ++k) {
+  for (std::size_t k = edge.size(); k-- > 1;) {
     const Vec2 a = roll.across(edge[k - 1]), b = roll.across(edge[k]);
+    const Real chord = (b - a).norm();
+    if (std::fabs(angle) < 2 * std::numbers::pi) last_turn += chord, radius += chord * (a.norm() + b.norm()) / 2;
     angle += std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
-    length += (b - a).norm();
-    if (k + 1 < edge.size()) radius = std::max(radius, b.norm());  // the last row may stand off already
+    length += chord;
   }
+  const Real pitch = world.setup.scene.strips[strip].winding->pitch;
   return {{"turns", std::fabs(angle) / (2 * std::numbers::pi)},
           {"wound_length_m", length},
-          {"outer_radius_m", radius},
+          {"outer_radius_m", last_turn > 0 ? radius / last_turn + pitch / 2 : 0},
           {"roll_mass_kg", mass},
           {"roll_inertia_kg_m2", inertia}};
 }

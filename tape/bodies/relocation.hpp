@@ -37,6 +37,14 @@ TAPE_HD Relocation<K> relocate(const Stencil<K>& stencil, const StateView& s) {
   return r;
 }
 
+/// Whether bodies carry all of a stencil, or hold it fixed.
+template <int K>
+TAPE_HD bool rigid(const Relocation<K>& r) {
+  for (int i = 0; i < K; ++i)
+    if (r.slot[i] >= 0 && !r.rigid[i]) return false;
+  return true;
+}
+
 /// Places of the pairs (a, b), a <= b, of m blocks in a list: 0 ... m (m + 1) / 2 - 1.
 TAPE_HD inline int pair_slot(int a, int b, int m) { return a * (2 * m - a - 1) / 2 + b; }
 

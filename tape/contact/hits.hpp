@@ -75,13 +75,12 @@ class Hits {
   int count(int queries, const Query& query) {
     first_.resize(queries), slots_.resize(queries * kSlots);
     parallel_for(queries, CountHits<Query>{query, slots_.span(), first_.span()});
-    const int total = exclusive_scan(first_.span());
-    hits_.resize(total);
-    return total;
+    return exclusive_scan(first_.span());
   }
   /// @param pairs  as many as count() returned for the same query
   template <class Query>
   void emit(const Query& query, Span<ContactPair> pairs) {
+    hits_.resize(pairs.size);
     parallel_for(first_.size(), EmitPairs<Query>{query, slots_.span(), first_.span(), hits_.span(), pairs});
   }
 

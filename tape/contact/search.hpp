@@ -31,6 +31,9 @@ class ContactSearch {
   bool update(const PathView& paths, Real margin);
   /// Finds the candidates anew, whatever is known.
   void rebuild(const PathView& paths, Real margin);
+  /// Whether a rebuild would find no more than `most` pairs for each vertex and edge that it looks at. Paths that sweep the layers of a
+  /// roll through each other meet nearly all of them. What was known is forgotten.
+  bool within(const PathView& paths, Real margin, int most);
   /// Pairs that something else holds apart, sorted by key, each once: they leave the candidates, and CCD only keeps them from crossing.
   void set_bonded(const std::vector<VertexTriangle>& bonded);
   /// They, with their constants; xi and dhat are 0.
@@ -63,6 +66,8 @@ class ContactSearch {
   };
   void resize(Seen& seen) const;
   void look(const PathView& paths, Real margin);
+  template <class F>
+  void query(const F& f);
   void find_frames(const PathView& paths);
   void make_shapes(const detail::Primitives& list, Seen& seen);
   void plant(const detail::Primitives& list, const Seen& seen, bool vertices, Planted& trees);

@@ -106,8 +106,9 @@ inline void ContactSearch::look(const PathView& paths, Real margin) {
   plant(surface_.all_followers, world_, false, follower_trees_);
 }
 
-inline void ContactSearch::rebuild(const PathView& paths, Real margin) {
-  look(paths, margin);
+/// After a look: calls f with what asks for pairs of vertices, of what sleeps and of edges, and how many each finds.
+template <class F>
+void ContactSearch::query(const F& f) {
   const auto trees = [&](BoxTree Planted::*kind) {
     return detail::Trees{(own_trees_.*kind).view(), (asleep_trees_.*kind).view(), (rest_trees_.*kind).view(),
                          (follower_trees_.*kind).view()};
@@ -119,14 +120,32 @@ inline void ContactSearch::rebuild(const PathView& paths, Real margin) {
   const detail::EdgeQuery edges{nearness, trees(&Planted::edges), seen.edges.span()};
   const int of_vertices = vertex_hits_.count(vertices.list.size, vertices);
   const int of_sleepers = sleeper_hits_.count(asleep_trees_.size > 0 ? sleepers.list.size : 0, sleepers);
-  report_.vertex_triangle = of_vertices + of_sleepers;
-  report_.edge_edge = edge_hits_.count(edges.list.size, edges);
-  Buffer<ContactPair>& all = bonded_.size() > 0 ? found_ : pairs_;
-  all.resize(report_.vertex_triangle + report_.edge_edge);
-  ContactPair* const pairs = all.span().data;
-  vertex_hits_.emit(vertices, Span<ContactPair>{pairs, of_vertices});
-  sleeper_hits_.emit(sleepers, Span<ContactPair>{pairs + of_vertices, of_sleepers});
-  edge_hits_.emit(edges, Span<ContactPair>{pairs + report_.vertex_triangle, report_.edge_edge});
+  f(vertices, sleepers, edges, of_vertices, of_sleepers, edge_hits_.count(edges.list.size, edges));
+}
+
+inline bool ContactSearch::within(const PathView& paths, Real margin, int most) {
+  forget();
+  look(paths, margin);
+  long long found = 0;
+  query([&](const auto&, const auto&, const auto&, long long of_vertices, long long of_sleepers, long long of_edges) {
+    found = of_vertices + of_sleepers + of_edges;
+  });
+  const detail::Primitives& seen = surface_.in_view();
+  return found <= static_cast<long long>(most) * (seen.vertices.size() + seen.edges.size());
+}
+
+inline void ContactSearch::rebuild(const PathView& paths, Real margin) {
+  look(paths, margin);
+  query([&](const auto& vertices, const auto& sleepers, const auto& edges, int of_vertices, int of_sleepers, int of_edges) {
+    report_.vertex_triangle = of_vertices + of_sleepers;
+    report_.edge_edge = of_edges;
+    Buffer<ContactPair>& all = bonded_.size() > 0 ? found_ : pairs_;
+    all.resize(report_.vertex_triangle + report_.edge_edge);
+    ContactPair* const pairs = all.span().data;
+    vertex_hits_.emit(vertices, Span<ContactPair>{pairs, of_vertices});
+    sleeper_hits_.emit(sleepers, Span<ContactPair>{pairs + of_vertices, of_sleepers});
+    edge_hits_.emit(edges, Span<ContactPair>{pairs + report_.vertex_triangle, report_.edge_edge});
+  });
   if (bonded_.size() > 0) drop_bonded();
   join_components(surface_.view());
   built_ = true;

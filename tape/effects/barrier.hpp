@@ -78,6 +78,17 @@ struct Barrier {
     return h;
   }
 
+  template <class F>
+  TAPE_HD bool squares(const StateView& s, int i, const F& add) const {
+    const ContactPair& pair = elements[i];
+    const PairState at = PairState::at(pair, s.x);
+    if (at.fade.slope != 0) return false;
+    for_each_feature(pair, at, [&](const PairState& p, Real share) {
+      if (share > 0) add(share * barrier(p, pair).curvature, p.gradient());
+    });
+    return true;
+  }
+
  private:
   /// J^T v with J = d(ea x eb)/dx; that of c = |ea x eb|^2 is 2 J^T (ea x eb).
   TAPE_HD static VecN<12> fade_pull(const PairState& p, const Vec3& v) {

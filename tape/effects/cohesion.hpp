@@ -93,6 +93,15 @@ struct Cohesion {
     return h;
   }
 
+  template <class F>
+  TAPE_HD bool squares(const StateView& s, int i, const F& add) const {
+    const Element& e = elements[i];
+    const MatN<12, 2> J = e.lagged.slope(frame, s);
+    add(e.opening, PairState::at(e.pair, s.x).gradient());
+    for (int c = 0; c < 2; ++c) add(e.sliding, VecN<12>(J.col(c)));
+    return true;
+  }
+
   /// Whether a pair is remembered that was not before, at the end of a step.
   TAPE_HD bool begin(const ContactPair& pair, const StateView& s, Memory& out) const {
     const Adhesion& a = s.adhesion[pair.interface];

@@ -34,6 +34,9 @@ namespace tape {
 ///     Real accuracy_to_judge(s, i)             optional: [m] to which positions must be solved before renew may judge element i
 ///     Real Memory::engagement(adhesion)        [1] how much of a new pair's adhesion it has, for pictures
 ///     Memory::replaces_contact()               optional: while true the pair leaves contact and friction; CCD only keeps it from crossing
+///   bool squares(s, i, add)                    the projected Hessian as sum of c g g^T: calls add(c, g) for each; false, and no call,
+///   where it
+///                                              is of another form
 ///   bool active(s, i)                          false: element i contributes nothing here, gradient and Hessian skip it
 template <class T>
 concept Effect = requires(const Scene& scene, const Assembly& assembly, typename T::Params& p, std::vector<typename T::Element>& elements,

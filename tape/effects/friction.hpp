@@ -78,6 +78,18 @@ struct Friction {
     if (mode == HessianMode::exact && !s.overshot) e.lagged.add_curvature(frame, s, e.limit * pull * u, h);
     return h;
   }
+  /// Along the slip and across it.
+  template <class F>
+  TAPE_HD bool squares(const StateView& s, int i, const F& add) const {
+    const Element& e = elements[i];
+    const Vec2 u = slip(s, i);
+    const Real y = u.norm(), pull = law(s).secant(y);
+    const MatN<12, 2> J = e.lagged.slope(frame, s);
+    const Vec2 along = y > 0 ? Vec2(u / y) : Vec2(1, 0);
+    add(e.limit * (pull - (s.overshot || !(y > 0) ? 0 : law(s).bend(y))), VecN<12>(J * along));
+    add(e.limit * pull, VecN<12>(J * Vec2(-along.y(), along.x())));
+    return true;
+  }
 
  private:
   TAPE_HD Coulomb law(const StateView& s) const { return {eps_v * s.dt}; }

@@ -152,6 +152,20 @@ struct EmitKeys {
   }
 };
 
+/// Adds c (J^T g) (J^T g)^T to the blocks of an element.
+template <class Blocks>
+struct AddSquare {
+  const Blocks& r;
+  Mat3* out;
+  template <class G>
+  TAPE_HD void operator()(Real c, const G& g) const {
+    Vec3 j[2 * G::RowsAtCompileTime / 3];
+    relocate_gradient(r, g, j);
+    for (int a = 0; a < r.blocks; ++a)
+      for (int b = a; b < r.blocks; ++b) out[pair_slot(a, b, r.blocks)] += c * j[a] * j[b].transpose();
+  }
+};
+
 template <class T>
 struct FillSlots {
   T term;
@@ -166,13 +180,30 @@ struct FillSlots {
     const int e = select[i];
     const auto r = blocks_of(term, s, e);
     const VecN<3 * stencil_size<T>> g = term.gradient(s, e);
-    const MatN<3 * stencil_size<T>, 3 * stencil_size<T>> H = term.hessian(s, e, mode);
     Mat3* out = hessian_out.data + hessian_base + hessian[i];
     relocate_gradient(r, g, gradient_out.data + gradient_base + gradient[i]);
-    relocate_hessian(r, g, H, mode == HessianMode::exact, out);
+    if (!fill_squares(r, e, out)) {
+      const MatN<3 * stencil_size<T>, 3 * stencil_size<T>> H = term.hessian(s, e, mode);
+      relocate_hessian(r, g, H, mode == HessianMode::exact, out);
+    }
     for (int a = 0; a < r.blocks; ++a)  // the matrix stores its upper triangle
       for (int b = a + 1; b < r.blocks; ++b)
         if (r.block[a] > r.block[b]) out[pair_slot(a, b, r.blocks)].transposeInPlace();
+  }
+
+ private:
+  /// What is projected, or between rigid bodies only: there the rest of the Hessian is forces times curvature of the relative motion,
+  /// next to nothing beside what keeps the bodies apart or together, and costs most of the assembly of a reduced roll.
+  template <class Blocks>
+  TAPE_HD bool fill_squares(const Blocks& r, int e, Mat3* out) const {
+    const AddSquare<Blocks> add{r, out};
+    if constexpr (requires { term.squares(s, e, add); }) {
+      if (mode == HessianMode::projected || rigid(r)) {
+        for (int p = 0; p < r.blocks * (r.blocks + 1) / 2; ++p) out[p] = Mat3::Zero();
+        return term.squares(s, e, add);
+      }
+    }
+    return false;
   }
 };
 }  // namespace objective

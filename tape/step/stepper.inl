@@ -418,12 +418,24 @@ class SideStepper final : public Stepper {
     }
   }
 
+  /// To what the search can look at: `max_move`, and less where that meets too many pairs.
+  void shorten_direction() {
+    const ContactParams& contact = world_.setup.scene.contact;
+    const Real dhat = world_.setup.scene.dhat();
+    const auto paths = [&] { return coordinates_->paths(now_, direction_.span()); };
+    const auto scale = [&](Real factor) { parallel_for(direction_.size(), stepping::Scale{direction_.span(), factor}); };
+    Real way = reduce(now_.x.size(), 0.0, stepping::Way{paths()}, Larger{});
+    if (way > contact.max_move) scale(contact.max_move / std::exchange(way, contact.max_move));
+    constexpr Real kFar = 30;  // [dhat] what moves less meets a few layers
+    constexpr int kMost = 40;  // pairs for each vertex and edge
+    const Stopwatch watch(search_ms_);
+    for (; way > kFar * dhat && !search_->within(paths(), contact.margin * dhat, kMost); way /= 4) scale(0.25);
+  }
+
   /// Moves now_ along direction_: limited by CCD for each connected component, then halved until the energy falls.
   bool line_search(Real slope, StepReport& report, bool& at_round_off) {
     if (search_) {
-      const Real way = reduce(now_.x.size(), 0.0, stepping::Way{coordinates_->paths(now_, direction_.span())}, Larger{});
-      if (const Real longest = world_.setup.scene.contact.max_move; way > longest)
-        parallel_for(direction_.size(), stepping::Scale{direction_.span(), longest / way});
+      shorten_direction();
       update_candidates(direction_.span());
       if (search_->candidates().size + search_->bonded().size > 0) {
         const Stopwatch watch(ccd_ms_);

@@ -399,6 +399,21 @@ TEST(ContactSearch, NoMotionLeavesNoPairBetweenFixedThingsOrWithinOneBody) {
   EXPECT_EQ(search.candidates().size, 0);
 }
 
+TEST(ContactSearch, SaysWhetherPathsMeetMorePairsThanAskedForAndMakesThemAllTheSame) {
+  Scene scene(test::wound_strip(8, 2.7e-4, kXi));
+  ContactSearch search(scene.mesh(), kDhat, kDhat / 2);
+  const int primitives = static_cast<int>(scene.mesh().vertices.size() + scene.mesh().edges.size());
+  scene.jiggle(5e-3, 3);
+  search.update(scene.paths(), 0);
+  const std::set<Key> found = keys(search.candidates());
+  const int each = search.candidates().size / primitives;
+  EXPECT_GT(each, 20);
+  EXPECT_FALSE(search.within(scene.paths(), 0, each));
+  EXPECT_TRUE(search.within(scene.paths(), 0, each + 1));
+  EXPECT_TRUE(search.update(scene.paths(), 0)) << "it has forgotten what it knew";
+  EXPECT_EQ(keys(search.candidates()), found);
+}
+
 TEST(ContactSearch, OnlyWhatCandidatesConnectSharesAStepLimit) {
   test::Surface s;
   add_table(s, 1e-3);      // 0: fixed, under everything

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "tape/effects/body_drive.hpp"
+#include "tests/support/derivatives.hpp"
 #include "tests/support/effect_world.hpp"
 using namespace tape;
 
@@ -40,6 +43,25 @@ TEST(BodyInertia, IsTheSumOverThePointsOfTheBody) {
     const VecN<6> g = body.gradient(at, target);
     EXPECT_LT((g.head<3>() - force).norm(), 1e-14 * force.norm() + 1e-20) << angle;
     EXPECT_LT((g.tail<3>() - torque).norm(), 1e-12 * second.norm()) << angle;
+  }
+}
+TEST(BodyInertia, HasTheHessianOfItsEnergyAtAnyAngle) {
+  constexpr Real kPi = std::numbers::pi;
+  test::EffectWorld world(8);
+  const Mat3 any = Mat3::Random();
+  const BodyQuadratic body{0.02, 1e-6 * any * any.transpose()};
+  for (Real angle : {0.0, 1e-9, 1.0, kPi - 1e-9, kPi}) {
+    const Pose target{rotation_exp(world.random_vector(3)), world.random_vector(0.1)};
+    const Pose at{rotation_exp(angle * world.random_vector(1).normalized()) * target.rotation, target.position + world.random_vector(1e-3)};
+    const auto gradient = [&](const Eigen::VectorXd& q) {
+      return body.gradient({rotation_exp(Vec3(q.tail<3>())) * at.rotation, at.position + q.head<3>()}, target);
+    };
+    const Eigen::MatrixXd slope = test::jacobian(gradient, Eigen::VectorXd::Zero(6), 1e-4);
+    const Eigen::MatrixXd h = body.hessian(at, target, HessianMode::exact);
+    // Rotations do not commute: half the skew matrix of the torque is the slope's alone.
+    EXPECT_LT((h - 0.5 * (slope + slope.transpose())).bottomRightCorner(3, 3).norm(), 1e-9 * body.second.norm()) << angle;
+    EXPECT_LT((h - slope).topLeftCorner(3, 3).norm(), 1e-9 * body.mass) << angle;
+    EXPECT_GE(test::smallest_eigenvalue(body.hessian(at, target, HessianMode::projected)), -1e-12 * body.second.norm()) << angle;
   }
 }
 TEST(BodyInertia, GoesWithTheInverseSquareOfTheTimeStep) {

@@ -89,6 +89,27 @@ TYPED_TEST(EachEffect, TheProjectedHessianIsPositiveSemidefiniteAndSymmetric) {
   });
 }
 
+TYPED_TEST(EachEffect, TheProjectedHessianIsTheSumOfItsSquaresWhereItHasThem) {
+  constexpr int kSize = 3 * stencil_size<TypeParam>;
+  using Vector = VecN<kSize>;
+  using Matrix = MatN<kSize, kSize>;
+  const auto add = [](Matrix& sum) { return [&](Real c, const Vector& g) { sum += c * g * g.transpose(); }; };
+  Matrix unused;
+  if constexpr (requires(const TypeParam& term, const StateView& s) { term.squares(s, 0, add(unused)); }) {
+    int found = 0;
+    this->for_each_element([&](const EffectWorld& world, const TypeParam& term, int i) {
+      Matrix sum = Matrix::Zero();
+      if (!term.squares(world.view(), i, add(sum))) return;
+      const Matrix h = term.hessian(world.view(), i, HessianMode::projected);
+      EXPECT_LE((sum - h).norm(), 1e-12 * h.norm());
+      ++found;
+    });
+    EXPECT_GT(found, 0);
+  } else {
+    GTEST_SKIP() << "of another form";
+  }
+}
+
 TYPED_TEST(EachEffect, AStateMovedAsAWholeHasTheSameEnergyUnlessItFalls) {
   if constexpr (std::is_same_v<TypeParam, Gravity>) GTEST_SKIP() << "the one effect with a direction of its own";
   const Pose by{rotation_exp(Vec3(0.4, -1.1, 0.7)), Vec3(0.02, -0.01, 0.03)};
