@@ -64,7 +64,8 @@ std::set<std::string> launched_kernels() {
 }
 }  // namespace
 
-/// The CPU launches a kernel by the name tape::on_cpu::X; then the CUDA library must hold a launch of tape::on_cuda::X.
+/// The CPU launches a kernel by the name tape::on_cpu::X; then the CUDA library must hold a launch of tape::on_cuda::X. Names without a
+/// side, like tape::Dot, are those of functors that both sides share: the library must hold a launch of them too.
 TEST(CudaKernels, EveryKernelThatAStepLaunchesExistsForCuda) {
   const std::set<std::string> launched = launched_kernels();
   EXPECT_GT(launched.size(), 30u);
@@ -72,7 +73,6 @@ TEST(CudaKernels, EveryKernelThatAStepLaunchesExistsForCuda) {
   const std::string symbols = symbols_of(TAPE_CUDA_LIBRARY);
   ASSERT_NE(symbols.find("tape::on_cuda::detail::run<"), std::string::npos) << "no kernels at all in " << TAPE_CUDA_LIBRARY;
   for (std::string name : launched) {
-    EXPECT_NE(name.find("tape::on_cpu::"), std::string::npos) << name << " is a kernel of no side";
     for (std::size_t at; (at = name.find("on_cpu")) != std::string::npos;) name.replace(at, 6, "on_cuda");
     name = without_spaces(name);
     const bool there =
