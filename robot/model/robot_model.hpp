@@ -49,8 +49,8 @@ struct Shape {
 
 struct Link {
   std::string name;
-  Inertial inertial;
-  std::vector<Shape> visual, collision;
+  Inertial inertial = {};
+  std::vector<Shape> visual = {}, collision = {};
 };
 
 enum class JointType { revolute, continuous, prismatic };
