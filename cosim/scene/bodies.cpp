@@ -37,7 +37,10 @@ void read_velocities(const Reader& section, Body& body) {
 Body read_body(const Reader& section, const std::string& name, const std::filesystem::path& scene_file) {
   Body body;
   body.name = name;
-  if (const Reader motion = section["motion"]) body.motion = motion.choice<Motion>();
+  if (const Reader motion = section["motion"]) {
+    body.motion = motion.choice<Motion>();
+    if (body.motion == Motion::linked) motion.fail("only links of robots are; a body of the scene is static, driven or dynamic");
+  }
   body.pose = read_pose(section);
   read_waypoints(section["waypoints"], body);
   read_velocities(section, body);

@@ -55,6 +55,12 @@ BodyMass body_mass(const Body& body, Vec3& centre) {
   return {density * unit.volume, density * unit.second};
 }
 
+int index_of(const Scene& scene, const std::string& body) {
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+    if (scene.bodies[b].name == body) return static_cast<int>(b);
+  return -1;
+}
+
 /// First block of each body of the scene, -1 if it is fixed, then of the cluster of each reduced strip.
 std::vector<int> number_bodies(Assembly& a, const Scene& scene) {
   std::vector<int> first;
@@ -66,6 +72,27 @@ std::vector<int> number_bodies(Assembly& a, const Scene& scene) {
   for (const Strip& strip : scene.strips)
     if (scene.reduces(strip)) number(true);
   return first;
+}
+
+/// @throws InputError if a link is no linked body, is one of two articulations, or none has it
+void add_articulations(Assembly& a, const Scene& scene) {
+  std::vector<bool> free(scene.bodies.size());
+  for (std::size_t b = 0; b < free.size(); ++b) free[b] = scene.bodies[b].motion == Motion::linked;
+  for (const Articulation& articulation : scene.articulations) {
+    ArticulationPart part{articulation.coordinates, a.blocks, (articulation.coordinates + 2) / 3, {}};
+    if (part.coordinates < 1) throw InputError("articulation '" + articulation.name + "' has no coordinates");
+    for (const std::string& link : articulation.links) {
+      const int body = index_of(scene, link);
+      if (body < 0 || !free[static_cast<std::size_t>(body)])
+        throw InputError("articulation '" + articulation.name + "': '" + link + "' is no linked body, or not this one's alone");
+      free[static_cast<std::size_t>(body)] = false;
+      part.links.push_back(body);
+    }
+    a.blocks += part.blocks;
+    a.articulations.push_back(std::move(part));
+  }
+  for (std::size_t b = 0; b < free.size(); ++b)
+    if (free[b]) throw InputError("body '" + scene.bodies[b].name + "' is linked, but no articulation has it");
 }
 
 void add_body(Assembly& a, const Body& body, int index, int block) {
@@ -84,12 +111,6 @@ void add_body(Assembly& a, const Body& body, int index, int block) {
     add_vertex(a, apply(body.pose, y), {part.block, part.block < 0 ? -1 : index}, y - part.mesh_offset);
   for (const Index3& t : body.mesh.triangles) a.triangles.push_back(t.array() + part.first_vertex);
   a.bodies.push_back(part);
-}
-
-int index_of(const Scene& scene, const std::string& body) {
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b)
-    if (scene.bodies[b].name == body) return static_cast<int>(b);
-  return -1;
 }
 
 /// A point fixed to a body that no surface has.
@@ -183,6 +204,8 @@ int Assembly::cluster_body(int strip) const {
 Assembly assemble(const Scene& scene) {
   Assembly a;
   const std::vector<int> block = number_bodies(a, scene);
+  add_articulations(a, scene);
+  a.first_strip_block = a.blocks;
   for (const Strip& strip : scene.strips) add_strip(a, scene, strip);
   a.strip_vertices = static_cast<int>(a.x.size());
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) add_body(a, scene.bodies[b], static_cast<int>(b), block[b]);

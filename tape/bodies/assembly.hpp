@@ -29,9 +29,17 @@ struct BodyPart {
   Vec3 velocity = Vec3::Zero(), angular_velocity = Vec3::Zero();  ///< [m/s], [rad/s] at the start
 };
 
+/// An articulation in the world's arrays: three of its coordinates to a block, the last block filled up with some that move nothing.
+struct ArticulationPart {
+  int coordinates = 0;
+  int first_block = 0, blocks = 0;
+  std::vector<int> links;  ///< bodies
+};
+
 /// The scene as arrays. Vertices: those of the strips, of the bodies, then markers (points of bodies that no surface has). Bodies: those of
 /// the scene, then the clusters of reduced rolls, which as yet have no members.
-/// Unknowns are blocks of 3: two per body that is not fixed (translation, rotation), then one per strip vertex.
+/// Unknowns are blocks of 3: two per body that is not fixed (translation, rotation), those of articulations, then one per strip vertex.
+/// Blocks of links follow those of their articulation.
 struct Assembly {
   std::vector<Vec3> x;             ///< [nv] m, at the start
   std::vector<Vec3> v;             ///< [nv] m/s, at the start; strip vertices only
@@ -42,9 +50,11 @@ struct Assembly {
   std::vector<Index3> triangles;   ///< of strips, then of bodies
   std::vector<StripPart> strips;   ///< in the order of the scene
   std::vector<BodyPart> bodies;
+  std::vector<ArticulationPart> articulations;
   int strip_vertices = 0;    ///< vertices below this are those of strips
   int surface_vertices = 0;  ///< vertices below this have a surface, those from it on are markers
   int blocks = 0;
+  int first_strip_block = 0;  ///< blocks below this are those of bodies and articulations
 
   /// Points that a grip holds, and the marker of each on the body it ties to (-1: a target moved by the script).
   struct GripPart {

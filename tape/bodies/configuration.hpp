@@ -6,13 +6,15 @@
 #include "tape/math/rotation.hpp"
 
 namespace tape::TAPE_SIDE {
-/// Positions of all vertices and poses of all bodies on this side: a point in the space of the unknowns.
+/// Positions of all vertices, poses of all bodies and coordinates of all articulations on this side: a point in the space of the unknowns.
 struct Configuration {
   Buffer<Vec3> x;     ///< [nv] m
   Buffer<Pose> body;  ///< [bodies] X_WB
+  Buffer<Vec3> q;     ///< [blocks of articulations] since the start of the step
   void copy_from(const Configuration& other) {
     x.copy_from(other.x);
     body.copy_from(other.body);
+    q.copy_from(other.q);
   }
 };
 
@@ -42,6 +44,13 @@ struct MoveVertex {
     to[v] = o.body < 0 ? Vec3(from[v] + step * direction[o.block]) : apply(body[o.body], local[v]);
   }
 };
+struct MoveCoordinate {
+  Span<const Vec3> from, direction;
+  int first_block;
+  Real step;
+  Span<Vec3> to;
+  TAPE_HD void operator()(int k) const { to[k] = from[k] + step * direction[first_block + k]; }
+};
 struct BlockPoints {
   Span<const Vec3> x;
   Span<const VertexOwner> owner;
@@ -58,12 +67,13 @@ class Coordinates {
   /// @param owner       [nv]
   /// @param local       [nv] m, in frame B
   /// @param body_block  [bodies] first block of each, -1 if it is fixed
-  Coordinates(const std::vector<VertexOwner>& owner, const std::vector<Vec3>& local, const std::vector<int>& body_block, int blocks)
-      : owner_(owner), local_(local), body_block_(body_block), blocks_(blocks) {}
-  int blocks() const { return blocks_; }
+  /// @param q_block     first block of the articulations, which are consecutive
+  Coordinates(const std::vector<VertexOwner>& owner, const std::vector<Vec3>& local, const std::vector<int>& body_block, int q_block)
+      : owner_(owner), local_(local), body_block_(body_block), q_block_(q_block) {}
   Span<const VertexOwner> owner() const { return owner_.span(); }
   /// to = from moved by `step` times the direction [blocks] m and rad. Fixed things keep what `to` has.
   void move(const Configuration& from, Span<const Vec3> direction, Real step, Configuration& to) const {
+    parallel_for(from.q.size(), coordinates::MoveCoordinate{from.q.span(), direction, q_block_, step, to.q.span()});
     parallel_for(from.body.size(), coordinates::MoveBody{from.body.span(), direction, body_block_.span(), step, to.body.span()});
     parallel_for(from.x.size(),
                  coordinates::MoveVertex{from.x.span(), direction, owner_.span(), local_.span(), to.body.span(), step, to.x.span()});
@@ -80,6 +90,6 @@ class Coordinates {
   Buffer<VertexOwner> owner_;
   Buffer<Vec3> local_;
   Buffer<int> body_block_;
-  int blocks_;
+  int q_block_;
 };
 }  // namespace tape::TAPE_SIDE

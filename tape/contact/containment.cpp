@@ -26,6 +26,7 @@ void check_nothing_inside(const std::vector<Vec3>& x, const SurfaceMesh& mesh) {
   for (std::size_t inner = 0; inner < objects; ++inner) {
     for (std::size_t outer = 0; outer < objects; ++outer) {
       if (inner == outer || vertex[inner] < 0 || vertex[outer] < 0 || triangles[outer][0]->open) continue;
+      if (mesh.kept_apart(static_cast<int>(inner), static_cast<int>(outer))) continue;
       const Vec3& p = x[static_cast<std::size_t>(vertex[inner])];
       Real angle = 0;
       for (const SurfaceTriangle* t : triangles[outer])

@@ -25,6 +25,13 @@ ObjectGroups::ObjectGroups(const SurfaceMesh& mesh)
     if (other >= 0) parent_[at(root(object))] = root(other);  // one body carries both
     std::fill(object_of_block.begin() + owner.block, object_of_block.begin() + static_cast<std::ptrdiff_t>(end), object);
   }
+  for (const JointlyMoved& joint : mesh.together) {
+    if (joint.objects.empty()) continue;
+    for (int object : joint.objects) parent_[at(root(object))] = root(joint.objects[0]);
+    const std::size_t end = at(joint.first_block + joint.blocks);
+    if (object_of_block.size() < end) object_of_block.resize(end, -1);
+    std::fill_n(object_of_block.begin() + joint.first_block, joint.blocks, joint.objects[0]);
+  }
   constant_parent_ = parent_;
   number_components();
 }

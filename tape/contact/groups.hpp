@@ -5,7 +5,7 @@
 
 namespace tape {
 /// Objects that must take steps of one length: those that candidates connect, directly or through others, and those that one
-/// rigid body carries. Objects that cannot move connect nothing. Host only.
+/// rigid body or articulation moves. Objects that cannot move connect nothing. Host only.
 class ObjectGroups {
  public:
   explicit ObjectGroups(const SurfaceMesh& mesh);

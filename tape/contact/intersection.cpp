@@ -66,7 +66,10 @@ Intersections find_intersections(const SurfaceMesh& mesh, const std::vector<Vec3
       const auto& t = mesh.triangles[static_cast<std::size_t>(j)].v;
       const bool shared = std::ranges::any_of(t, [&](int v) { return v == e[0] || v == e[1]; });
       const bool together = carrier != on_cpu::detail::kFree && carrier == carriers.triangle[static_cast<std::size_t>(j)];
-      if (!shared && !together && segment_meets_triangle(p, q, at(x, t[0]), at(x, t[1]), at(x, t[2]))) met.push_back(j);
+      const auto object = [&](int v) { return mesh.vertices[static_cast<std::size_t>(v)].object; };
+      if (!shared && !together && !mesh.kept_apart(object(e[0]), object(t[0])) &&
+          segment_meets_triangle(p, q, at(x, t[0]), at(x, t[1]), at(x, t[2])))
+        met.push_back(j);
     });
     std::ranges::sort(met);
     for (int j : met) {

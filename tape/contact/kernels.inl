@@ -19,7 +19,8 @@ struct SurfaceView {
   Span<const int> vertex_frame;                                    ///< [nv] frame from which pairs of things that follow it are seen
   Span<const int> lead;     ///< [frames] vertex that the frame goes with, and turns with if a body carries it; none for the world
   Span<const char> member;  ///< [nv] of a cluster
-  int materials;
+  Span<const char> apart;   ///< [objects objects] 1: never a pair; empty: all may be
+  int objects, materials;
   Real dhat;   ///< [m] reach of vertex-triangle pairs beyond xi
   Real guard;  ///< [m] reach of the barrier of edge-edge pairs and between a rim and an open surface
   TAPE_HD Real xi(const SurfaceEdge& e) const { return std::max(vertices[e.v[0]].xi, vertices[e.v[1]].xi); }
@@ -29,6 +30,8 @@ struct SurfaceView {
   // Whether all of a primitive belongs to one cluster.
   TAPE_HD bool triangle_sleeps(int t) const { return triangle_carrier[t] >= 0 && member[triangles[t].v[0]] != 0; }
   TAPE_HD bool edge_sleeps(int e) const { return edge_carrier[e] >= 0 && member[edges[e].v[0]] != 0; }
+  /// Whether what two vertices belong to is kept apart by somebody else.
+  TAPE_HD bool kept_apart(int v, int w) const { return apart.size > 0 && apart[vertices[v].object * objects + vertices[w].object] != 0; }
   TAPE_HD int interface(int v, int w) const { return vertices[v].material * materials + vertices[w].material; }
   /// The pair of vertex v and triangle t with its constants.
   TAPE_HD ContactPair vertex_triangle(int v, int t) const {
@@ -274,7 +277,7 @@ struct Nearness {
     const int carrier = s.vertex_carrier[v], frame = s.vertex_frame[v];
     const TriangleShape& b = of(together, frame).triangles[t];
     if (together != (frame == b.frame) || v == b.v[0] || v == b.v[1] || v == b.v[2]) return false;
-    if (carrier != kFree && carrier == b.carrier) return false;
+    if ((carrier != kFree && carrier == b.carrier) || s.kept_apart(v, b.v[0])) return false;
     return agree(together, frame, [&](const Sight& sight) { return near(v, sight, sight.triangles[t]); });
   }
   TAPE_HD bool near(int v, const Sight& sight, const TriangleShape& b) const {
@@ -374,7 +377,7 @@ struct EdgeQuery {
       const EdgeShape &a = sight.edges[i], &b = sight.edges[j];
       if (together != (frame == b.frame)) return;
       if (a.v[0] == b.v[0] || a.v[0] == b.v[1] || a.v[1] == b.v[0] || a.v[1] == b.v[1]) return;
-      if (carrier != kFree && carrier == b.carrier) return;
+      if ((carrier != kFree && carrier == b.carrier) || s.kept_apart(a.v[0], b.v[0])) return;
       if (nearness.agree(together, frame, [&](const Sight& from) { return near(from.edges[i], from.edges[j]); })) f(j);
     });
   }

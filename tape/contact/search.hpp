@@ -25,6 +25,8 @@ class ContactSearch {
   ContactSearch(const SurfaceMesh& mesh, Real dhat, Real guard);
   /// What carries each vertex from now on. Members of clusters are looked for where they are at home, in trees that are planted once.
   void set_carriage(const SurfaceCarriage& carriage);
+  /// Which objects somebody else keeps apart from now on, as SurfaceMesh::apart.
+  void set_apart(const std::vector<char>& apart);
   /// Makes the candidates good for the whole of `paths`.
   /// @param margin  [m] by which the boxes of a rebuild exceed the paths: larger is reused longer, and finds more
   /// @return whether they had to be rebuilt

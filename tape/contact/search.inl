@@ -28,6 +28,11 @@ inline void ContactSearch::set_carriage(const SurfaceCarriage& carriage) {
   plant(surface_.asleep, own_, true, asleep_trees_);
 }
 
+inline void ContactSearch::set_apart(const std::vector<char>& apart) {
+  surface_.apart.upload(apart);
+  forget();
+}
+
 inline void ContactSearch::resize(Seen& seen) const {
   seen.trust.resize(surface_.vertices.size());
   seen.edges.resize(surface_.edges.size());

@@ -36,8 +36,14 @@ struct SurfaceCarriage {
   std::map<int, Vec3> clusters;    ///< bodies that are clusters: members follow them for good; [m] their centre of mass in that frame
 };
 
+/// Objects that one articulation moves, and its own blocks of unknowns.
+struct JointlyMoved {
+  std::vector<int> objects;
+  int first_block = 0, blocks = 0;
+};
+
 /// Contact surface of the world: strips and bodies alike. Two primitives never form a pair when they share a vertex, when
-/// both are fixed, or when one rigid body carries both.
+/// both are fixed, when one rigid body carries both, or when their objects are kept apart by somebody else.
 struct SurfaceMesh {
   std::vector<SurfaceVertex> vertices;  ///< [nv]
   std::vector<VertexOwner> owner;       ///< [nv]
@@ -45,8 +51,13 @@ struct SurfaceMesh {
   std::vector<SurfaceTriangle> triangles;
   std::vector<std::string> objects;  ///< names, for messages
   std::vector<int> follows;          ///< [objects] body that most of it moves and turns with, its own included; -1: none
+  std::vector<JointlyMoved> together;
+  std::vector<char> apart;  ///< [objects objects] 1: never a pair, symmetric; empty: all may be
   int materials = 1;
 
+  bool kept_apart(int object, int other) const {
+    return !apart.empty() && apart[static_cast<std::size_t>(object) * objects.size() + static_cast<std::size_t>(other)] != 0;
+  }
   /// Appends an object; its edges, areas and neighbours follow from its triangles.
   /// @param rest   [n] m
   /// @param added  its triangles, vertices counted from its first

@@ -84,7 +84,14 @@ struct Primitives {
 /// The surface in the memory of this side.
 struct SurfaceBuffers {
   SurfaceBuffers(const SurfaceMesh& mesh, Real dhat_, Real guard_)
-      : vertices(mesh.vertices), edges(mesh.edges), triangles(mesh.triangles), materials(mesh.materials), dhat(dhat_), guard(guard_) {
+      : vertices(mesh.vertices),
+        edges(mesh.edges),
+        triangles(mesh.triangles),
+        apart(mesh.apart),
+        objects(static_cast<int>(mesh.objects.size())),
+        materials(mesh.materials),
+        dhat(dhat_),
+        guard(guard_) {
     set_carriage(mesh, {});
   }
   /// Sorts the primitives by what they follow and whether they sleep: whether all their vertices are members of a cluster.
@@ -124,6 +131,8 @@ struct SurfaceBuffers {
             vertex_frame.span(),
             lead.span(),
             member.span(),
+            apart.span(),
+            objects,
             materials,
             dhat,
             guard};
@@ -134,10 +143,11 @@ struct SurfaceBuffers {
   Buffer<int> vertex_carrier, edge_carrier, triangle_carrier, vertex_frame, lead;
   Buffer<Home> home;                     ///< [frames]
   Buffer<char> member;                   ///< [nv]
+  Buffer<char> apart;                    ///< [objects objects], or empty
   Primitives followers, asleep, rest;    ///< of frames, awake; of frames, asleep; and those that follow none
   Primitives everything, all_followers;  ///< all, and those of frames; empty if alone
   bool alone = false;                    ///< everything follows one frame: nothing need be seen from the world
-  int materials;
+  int objects, materials;
   Real dhat, guard;
 };
 }  // namespace tape::TAPE_SIDE::detail

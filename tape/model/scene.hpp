@@ -16,8 +16,9 @@
 namespace tape {
 enum class MeshPattern { same, alternating, crossed, irregular };
 constexpr auto enum_names(MeshPattern) { return std::array<std::string_view, 4>{"same", "alternating", "crossed", "irregular"}; }
-enum class Motion { fixed, driven, dynamic };
-constexpr auto enum_names(Motion) { return std::array<std::string_view, 3>{"static", "driven", "dynamic"}; }
+/// `linked`: a link of an articulation.
+enum class Motion { fixed, driven, dynamic, linked };
+constexpr auto enum_names(Motion) { return std::array<std::string_view, 4>{"static", "driven", "dynamic", "linked"}; }
 
 struct TimeParams {
   Real dt = 0.01;
@@ -172,6 +173,14 @@ struct AxleJoint {
   AxleParams params;
 };
 
+/// Bodies that move together, as somebody else says before each step (bodies/articulation.hpp). What its links meet of each other and of
+/// fixed bodies is that one's matter, unless a step says otherwise.
+struct Articulation {
+  std::string name;
+  std::vector<std::string> links;  ///< bodies
+  int coordinates = 0;
+};
+
 /// Input of a simulation, plain and complete, in SI units. cosim/scene fills it from a file.
 struct Scene {
   std::string name;
@@ -189,6 +198,7 @@ struct Scene {
   std::vector<AdhesivePair> adhesives;
   std::vector<Grip> grips;
   std::vector<AxleJoint> axles;
+  std::vector<Articulation> articulations;
 
   Real dhat() const;                               ///< [m] contact.dhat, or the smallest of the films' (1e-3 without strips)
   Real mu(int a, int b) const;                     ///< friction of two materials

@@ -2,11 +2,8 @@
 
 namespace tape {
 Carriage carry(const Assembly& a, const std::vector<Cluster>& clusters, int collar) {
-  Carriage c{.owner = a.owner, .local = a.local, .mass = a.mass, .body_mass = {}, .strips = {}, .next = {}, .blocks = 0};
-  for (const BodyPart& body : a.bodies) {
-    c.body_mass.push_back(body.mass);
-    if (body.block >= 0) c.blocks = std::max(c.blocks, body.block + 2);
-  }
+  Carriage c{.owner = a.owner, .local = a.local, .mass = a.mass, .body_mass = {}, .strips = {}, .next = {}, .blocks = a.first_strip_block};
+  for (const BodyPart& body : a.bodies) c.body_mass.push_back(body.mass);
   std::size_t known = 0;
   for (std::size_t s = 0; s < a.strips.size(); ++s) {
     const StripPart& strip = a.strips[s];

@@ -109,6 +109,8 @@ class BlockMatrix {
   int size() const { return n_; }
   int blocks() const { return fixed_.blocks() + contact_.blocks(); }
   MatrixView view() const { return {fixed_.rows(), contact_.rows()}; }
+  const SlotGroup& fixed() const { return fixed_; }
+  const SlotGroup& contact() const { return contact_; }
   /// Differs between any two patterns of the process, and stays while the keys stay.
   std::uint64_t pattern() const { return pattern_; }
   void multiply(Span<const Vec3> x, Span<Vec3> y) const;  ///< y = A x, each y_i summed by one iteration

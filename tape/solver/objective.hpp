@@ -3,20 +3,17 @@
 #include <tuple>
 #include <vector>
 
+#include "tape/bodies/articulation.hpp"
 #include "tape/bodies/relocation.hpp"
 #include "tape/contact/kernels.inl"
 #include "tape/core/side.hpp"
 #include "tape/core/stopwatch.hpp"
 #include "tape/effects/effects.hpp"
 #include "tape/solver/block_matrix.hpp"
+#include "tape/solver/energy_sum.hpp"
 #include "tape/solver/vector_gather.hpp"
 
 namespace tape {
-/// A sum of energies and of their magnitudes: the second tells what round-off the first may carry.
-struct EnergySum {
-  Real sum = 0, scale = 0;  ///< [J]
-};
-
 template <class T>
 inline constexpr bool is_contact = requires(const T& t, const ContactPair& p, const StateView& s, typename T::Element& e) {
   t.lag(p, s, e);
@@ -60,7 +57,7 @@ struct Term : TermMemory<T> {
   Buffer<int> active;  // ids of the elements that contribute; contact effects only
   int count = 0;       // elements that contribute
   SlotOffsets offsets;
-  int gradient_base = 0, hessian_base = 0;
+  int gradient_base = 0, hessian_base = 0, gradient_slots = 0;
   Real ms = 0;
 };
 
@@ -99,6 +96,9 @@ class Objective {
   void linearize(const StateView& s, HessianMode mode);
   Span<const Vec3> gradient() const { return gradient_.span(); }
   const BlockMatrix& matrix() const { return matrix_; }
+  /// What an effect exerts on the rigid body of two blocks, the torque about its frame's origin, at the s of linearize().
+  template <class T>
+  Wrench wrench(const Term<T>& term, int block) const;
   /// "effect 'name', element i": the first whose energy is not finite; empty if all are.
   std::string first_non_finite(const StateView& s);
   /// The same of the gradients and Hessians that linearize() found.

@@ -20,16 +20,13 @@ struct ElementEnergy {
     return {e, std::fabs(e)};
   }
 };
-struct AddEnergies {
-  TAPE_HD EnergySum operator()(const EnergySum& a, const EnergySum& b) const { return {a.sum + b.sum, a.scale + b.scale}; }
-};
 
 /// Of all elements that may contribute.
 template <class T>
 EnergySum energy_of(const Term<T>& term, const StateView& s) {
   const bool all = is_contact<T>;
   const Selection select{all ? Span<const int>{} : term.active.span()};
-  return reduce(all ? term.view.elements.size : term.count, EnergySum{}, ElementEnergy<T>{term.view, s, select}, AddEnergies{});
+  return reduce(all ? term.view.elements.size : term.count, EnergySum{}, ElementEnergy<T>{term.view, s, select}, Plus{});
 }
 
 template <class T>
@@ -65,6 +62,14 @@ struct FirstNonFiniteSlot {
       if (!hessian_slots[k].allFinite()) return i;
     return count;
   }
+};
+/// Gradient slot i of an effect if it is of this block.
+struct SlotOfBlock {
+  Span<const std::uint64_t> rows;
+  Span<const Vec3> gradient;
+  int first;
+  std::uint64_t block;
+  TAPE_HD Vec3 operator()(int i) const { return rows[first + i] == block ? gradient[first + i] : Vec3(Vec3::Zero()); }
 };
 template <class T>
 struct FlagActive {
@@ -256,8 +261,7 @@ inline EnergySum Objective::energy(const StateView& s) {
   for_each([&]<class T>(std::string_view, Term<T>& term) {
     if (term.view.elements.size == 0) return;
     const Stopwatch watch(term.ms);
-    const EnergySum e = objective::energy_of(term, s);
-    total = {total.sum + e.sum, total.scale + e.scale};
+    total = total + objective::energy_of(term, s);
   });
   return total;
 }
@@ -320,7 +324,8 @@ inline void Objective::set_pattern(const StateView& s, bool contact) {
                      term.view, s, {term.active.span()}, term.count, term.offsets.gradient.span(), term.offsets.hessian.span()});
     term.gradient_base = gradient_slots;
     term.hessian_base = hessian_slots;
-    gradient_slots += exclusive_scan(term.offsets.gradient.span());
+    term.gradient_slots = exclusive_scan(term.offsets.gradient.span());
+    gradient_slots += term.gradient_slots;
     hessian_slots += exclusive_scan(term.offsets.hessian.span());
   });
   group.rows.resize(gradient_slots);
@@ -360,6 +365,18 @@ inline void Objective::fill(const StateView& s, HessianMode mode, bool contact) 
                                                      group.hessian.span()});
   });
   if (!contact || group.rows.size() > 0) group.gather.gather(group.gradient.span(), contact, gradient_.span());
+}
+
+template <class T>
+Wrench Objective::wrench(const Term<T>& term, int block) const {
+  Wrench sum;
+  if (term.count == 0) return sum;
+  const SlotGroupBuffers& group = is_contact<T> ? contact_ : fixed_;
+  const auto of = [&](int b) {
+    const objective::SlotOfBlock kernel{group.rows.span(), group.gradient.span(), term.gradient_base, static_cast<std::uint64_t>(b)};
+    return Vec3(-reduce(term.gradient_slots, Vec3(Vec3::Zero()), kernel, Plus{}));
+  };
+  return {of(block), of(block + 1)};
 }
 
 inline void Objective::linearize(const StateView& s, HessianMode mode) {

@@ -184,7 +184,7 @@ inline Real Objective::contact_energy(const StateView& s, const std::vector<Vert
     if constexpr (requires { T::contact_pairs; }) {
       T view = term.view;
       view.elements = contact.span();
-      sum += reduce(contact.size(), EnergySum{}, objective::ElementEnergy<T>{view, s, {}}, objective::AddEnergies{}).sum;
+      sum += reduce(contact.size(), EnergySum{}, objective::ElementEnergy<T>{view, s, {}}, Plus{}).sum;
     }
   });
   return sum;

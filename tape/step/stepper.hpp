@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tape/bodies/articulation.hpp"
 #include "tape/step/world.hpp"
 
 namespace tape {
@@ -60,12 +61,13 @@ struct StepReport {
   std::vector<StageReport> stages;
   Real adhesion_work = 0;  ///< [J] change of the energy of what adheres by what was remembered of the step: growth of beta adds
   Real woken = 0;          ///< [J] stored in what woke when clusters lost members, at the end
-  std::vector<AdhesionReport> adhesion;  ///< [Scene::adhesives]
-  std::vector<Vec3> grip_force;          ///< [grips] N that the grip exerts on what it holds
-  std::vector<Real> axle_torque;         ///< [axles] N m that the axle exerts on the body, about its axis
-  Real axle_work = 0;                    ///< [J] of these torques in the step: of drives, less what friction takes
-  std::vector<Vec3> body_force;          ///< [bodies] N of contact and grips on the body (driven and dynamic)
-  std::vector<Pose> body_pose;           ///< [bodies] X_WB at the end
+  std::vector<AdhesionReport> adhesion;           ///< [Scene::adhesives]
+  std::vector<Vec3> grip_force;                   ///< [grips] N that the grip exerts on what it holds
+  std::vector<Real> axle_torque;                  ///< [axles] N m that the axle exerts on the body, about its axis
+  Real axle_work = 0;                             ///< [J] of these torques in the step: of drives, less what friction takes
+  std::vector<Vec3> body_force;                   ///< [bodies] N of contact and grips on the body (driven and dynamic)
+  std::vector<Pose> body_pose;                    ///< [bodies] X_WB at the end
+  std::vector<ArticulationReport> articulations;  ///< [Scene::articulations]
   Real wall_ms = 0;
 };
 
@@ -74,7 +76,8 @@ class Stepper {
  public:
   virtual ~Stepper() = default;
   /// One step of setup.scene.time.dt. On failure (report.ok false) the state is the last good one.
-  virtual StepReport step(State& state) = 0;
+  /// @param exchange  needed where the scene has articulations
+  virtual StepReport step(State& state, const Exchange& exchange = {}) = 0;
   /// Magnitude [N] of the sum of the barrier's forces on each vertex at the last state, for pictures.
   virtual std::vector<Real> contact_force() const = 0;
 };

@@ -10,6 +10,7 @@
 #include "tape/contact/gap.hpp"
 #include "tape/contact/normals.hpp"
 #include "tape/contact/search.hpp"
+#include "tape/solver/articulations.inl"
 #include "tape/solver/linear_solver.hpp"
 #include "tape/solver/objective.inl"
 #include "tape/solver/remember.inl"
@@ -90,7 +91,8 @@ struct Fill {
 /// One step of the solver on one side.
 class SideStepper final : public Stepper {
  public:
-  explicit SideStepper(const World& world) : world_(world), linear_(world.setup.linear) {
+  explicit SideStepper(const World& world)
+      : world_(world), articulations_(world.assembly), apart_(world.surface.apart), linear_(world.setup.linear) {
     const State state = State::start(world);
     std::vector<Real> mu;
     std::vector<Adhesion> adhesion;
@@ -119,8 +121,9 @@ class SideStepper final : public Stepper {
     take_up(state);
   }
 
-  StepReport step(State& state) override {
+  StepReport step(State& state, const Exchange& exchange) override {
     StepReport report;
+    take(exchange);
     const Real dt = world_.setup.scene.time.dt;
     report.dt = dt;
     reset_times();
@@ -129,6 +132,7 @@ class SideStepper final : public Stepper {
       State next = state;
       const Real end = (state.step + 1) * dt;
       report.ok = advance(next, dt, world_.setup.newton.retries, report);
+      report.articulations = progress_.done;
       if (report.ok) {
         next.time = end;
         ++next.step;
@@ -153,7 +157,8 @@ class SideStepper final : public Stepper {
     fronts_ = fronts(state);
     std::vector<int> body_block;
     for (const BodyPart& b : world_.assembly.bodies) body_block.push_back(b.block);
-    coordinates_.emplace(carriage_.owner, carriage_.local, body_block, carriage_.blocks);
+    const int q_block = world_.assembly.first_strip_block - articulations_.q_blocks();
+    coordinates_.emplace(carriage_.owner, carriage_.local, body_block, q_block);
     mass_.upload(carriage_.mass);
     body_mass_.upload(carriage_.body_mass);
     SystemLayout layout;
@@ -161,7 +166,7 @@ class SideStepper final : public Stepper {
       layout.strips.push_back({carriage_.strips[s].block, carriage_.strips[s].blocks, world_.assembly.strips[s].columns});
     for (int block : body_block)
       if (block >= 0) layout.body_blocks.push_back(block);
-    linear_.set_layout(std::move(layout));
+    linear_.set_layout(articulations_.any() ? articulations_.set_layout(layout, carriage_.blocks) : std::move(layout));
     if (search_) search_->set_carriage(surface_carriage(world_, state, carriage_));
     for (Buffer<Vec3>* blocks : {&direction_, &right_, &points_}) blocks->resize(carriage_.blocks);
     objective_->set_carriage(carriage_.blocks, world_.assembly.strip_vertices, view(now_));
@@ -177,6 +182,67 @@ class SideStepper final : public Stepper {
     return std::ranges::equal(a, b, [](const auto& p, const auto& q) { return p == q || *p == *q; });
   }
 
+  /// Takes up what is exchanged in a step.
+  void take(const Exchange& exchange) {
+    TAPE_CHECK(exchange.articulations.size() == world_.assembly.articulations.size());
+    exchange_ = exchange;
+    progress_ = {};
+    for (const ArticulationStep& a : exchange.articulations) {
+      const Eigen::VectorXd zero = Eigen::VectorXd::Zero(a.predicted.size());
+      progress_.lead.push_back(zero);
+      progress_.done.push_back({zero, zero, std::vector<LinkReport>(a.jacobian.size())});
+    }
+    if (!search_ || exchange.articulations.empty()) return;
+    std::vector<char> apart = world_.surface.apart;
+    for (const Index2& pair : exchange.pinching) {
+      const std::size_t n = world_.surface.objects.size(), first = world_.assembly.strips.size();
+      const std::size_t a = first + static_cast<std::size_t>(pair[0]), b = first + static_cast<std::size_t>(pair[1]);
+      apart[a * n + b] = apart[b * n + a] = 0;
+    }
+    if (apart == apart_) return;
+    search_->set_apart(apart);
+    apart_ = std::move(apart);
+  }
+  /// Coordinates at the end of a part of the step if nothing exerted a force from now on.
+  std::vector<Eigen::VectorXd> course(Real dt) const {
+    std::vector<Eigen::VectorXd> target;
+    for (std::size_t a = 0; a < exchange_.articulations.size(); ++a)
+      target.push_back(exchange_.articulations[a].predicted * (dt / world_.setup.scene.time.dt) + dt * progress_.lead[a]);
+    return target;
+  }
+  /// Adds a part of the step that ended at now_ to what is done.
+  void add_progress(Real dt) {
+    if (exchange_.articulations.empty()) return;
+    const Real share = dt / world_.setup.scene.time.dt;
+    const std::vector<Eigen::VectorXd> q = articulations_.coordinates(now_.q.download());
+    objective_->linearize(view(now_), mode_);
+    for (std::size_t a = 0; a < q.size(); ++a) {
+      const ArticulationStep& step = exchange_.articulations[a];
+      ArticulationReport& done = progress_.done[a];
+      progress_.lead[a] = (q[a] - share * step.predicted) / dt;
+      done.q += q[a];
+      const std::vector<int>& bodies = world_.assembly.articulations[a].links;
+      for (std::size_t l = 0; l < bodies.size(); ++l) {
+        const int block = world_.assembly.bodies[static_cast<std::size_t>(bodies[l])].block;
+        VecN<6> all = VecN<6>::Zero();
+        objective_->for_each([&]<class T>(std::string_view, Term<T>& term) {
+          const Wrench wrench = objective_->wrench(term, block);
+          Wrench& sum = of_effect<T>(done.links[l]);
+          sum.force += share * wrench.force, sum.torque += share * wrench.torque;
+          all.head<3>() += wrench.force, all.tail<3>() += wrench.torque;
+        });
+        done.force += share * step.jacobian[l].transpose() * all;
+      }
+    }
+  }
+  template <class T>
+  static Wrench& of_effect(LinkReport& link) {
+    if constexpr (Remembers<T>) return link.adhesion;
+    if constexpr (std::is_same_v<T, Barrier>) return link.normal;
+    if constexpr (std::is_same_v<T, Friction>) return link.friction;
+    return link.hold;
+  }
+
   /// Brings the state to this side and finds what is prescribed for its end.
   void begin(const State& state, Real dt) {
     const Drive drive = Drive::at(world_, state, dt);
@@ -190,6 +256,8 @@ class SideStepper final : public Stepper {
     for (const Vec3& p : x) extent_ = std::fmax(extent_, p.cwiseAbs().maxCoeff());
     start_.x.upload(x);
     start_.body.upload(pose);
+    start_.q.upload(std::vector<Vec3>(static_cast<std::size_t>(articulations_.q_blocks()), Vec3::Zero()));
+    if (!exchange_.articulations.empty()) articulations_.begin(exchange_.articulations, course(dt), dt);
     x_tilde_.upload(x_tilde);
     body_target_.upload(drive.body_target);
     grip_target_.upload(drive.grip_target);
@@ -219,11 +287,13 @@ class SideStepper final : public Stepper {
   /// One step of dt; on failure two of dt/2, and so on `retries` times. `state` is changed on success only.
   bool advance(State& state, Real dt, int retries, StepReport& report) {
     State next = state;
+    const Progress before = progress_;
     close_grips(world_, next);
     begin(next, dt);
     if (!same(fronts(next), fronts_)) take_up(next);
     if (newton(next, report)) {
       read_back(next, dt);
+      add_progress(dt);
       renew_memory(next, dt, report);
       state = std::move(next);
       return true;
@@ -231,7 +301,10 @@ class SideStepper final : public Stepper {
     if (retries == 0) return false;
     ++report.substeps;
     next = state;
-    if (!advance(next, dt / 2, retries - 1, report) || !advance(next, dt / 2, retries - 1, report)) return false;
+    if (!advance(next, dt / 2, retries - 1, report) || !advance(next, dt / 2, retries - 1, report)) {
+      progress_ = before;
+      return false;
+    }
     report.failure.clear();
     state = std::move(next);
     return true;
@@ -339,7 +412,7 @@ class SideStepper final : public Stepper {
     objective_->begin_step(view(now_));
     {
       const Stopwatch watch(line_search_ms_);
-      energy_ = objective_->energy(view(now_));
+      energy_ = energy(now_);
     }
     if (!std::isfinite(energy_.sum)) return fail(report, "not finite at the start: " + objective_->first_non_finite(view(now_)));
     Real previous = 0, last_update = 0, left = 0;
@@ -375,6 +448,16 @@ class SideStepper final : public Stepper {
     return fail(report, "Newton's method took " + std::to_string(params.max_newton) + " iterations (solver.max_newton)");
   }
 
+  EnergySum energy(const Configuration& at) {
+    const EnergySum e = objective_->energy(view(at));
+    return articulations_.any() ? e + articulations_.energy(at.q.span()) : e;
+  }
+  LinearReport solve() {
+    const BlockMatrix& matrix = objective_->matrix();
+    if (!articulations_.any()) return linear_.solve(matrix, points_.span(), right_.span(), direction_.span());
+    return articulations_.solve(linear_, matrix, points_.span(), now_.q.span(), right_.span(), direction_.span());
+  }
+
   bool stops(Real moved, Real slope, Real rho) const {
     const NewtonParams& params = world_.setup.newton;
     if (params.stop == StopRule::velocity) return moved < params.velocity_tol * dt_;
@@ -404,7 +487,7 @@ class SideStepper final : public Stepper {
       }
       const Stopwatch watch(linear_ms_);
       coordinates_->block_points(now_, points_.span());
-      const LinearReport solved = linear_.solve(objective_->matrix(), points_.span(), right_.span(), direction_.span());
+      const LinearReport solved = solve();
       report.linear_solver = solved.solver;
       report.linear_iterations += solved.iterations;
       if (!solved.negative_curvature) {
@@ -449,7 +532,7 @@ class SideStepper final : public Stepper {
     Real step = 1;
     for (int h = 0; h <= world_.setup.newton.max_line_search; ++h, step /= 2) {
       coordinates_->move(now_, direction_.span(), step, trial_);
-      const EnergySum after = objective_->energy(view(trial_));
+      const EnergySum after = energy(trial_);
       if (after.sum < energy_.sum || (-slope * step <= round_off && after.sum <= energy_.sum + round_off)) {
         std::swap(now_, trial_);
         energy_ = after;
@@ -507,6 +590,12 @@ class SideStepper final : public Stepper {
     return copy.download();
   }
 
+  /// Of the articulations in the parts of a step that have gone well.
+  struct Progress {
+    std::vector<Eigen::VectorXd> lead;     // [articulations][m] rate by which they are ahead of what was predicted
+    std::vector<ArticulationReport> done;  // [articulations]
+  };
+
   const World& world_;
   Carriage carriage_;
   Fronts fronts_;  // that the carriage is of
@@ -515,6 +604,10 @@ class SideStepper final : public Stepper {
   std::optional<VertexNormals> normals_;  // where something adheres
   std::vector<VertexTriangle> replaced_;  // pairs that are out of contact in this step
   Real regained_ = 0;                     // [J] energy of contact that the end of the step let back, beyond that of the candidates
+  Articulations articulations_;
+  Exchange exchange_;
+  Progress progress_;
+  std::vector<char> apart_;  // that the search knows
   LinearSolver linear_;
   std::optional<Objective> objective_;
   Configuration start_, now_, trial_;

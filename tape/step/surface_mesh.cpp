@@ -33,6 +33,22 @@ void check_cells(const Assembly& a, const Scene& scene) {
     }
   }
 }
+/// Links of articulations, from each other and from what is fixed.
+void keep_apart(const Scene& scene, const Assembly& a, SurfaceMesh& mesh) {
+  if (a.articulations.empty()) return;
+  const auto object_of = [&](int body) { return static_cast<int>(scene.strips.size()) + body; };
+  const std::size_t n = mesh.objects.size();
+  mesh.apart.assign(n * n, 0);
+  const auto foreign = [&](std::size_t b) { return scene.bodies[b].motion == Motion::linked || scene.bodies[b].motion == Motion::fixed; };
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+    for (std::size_t c = 0; c < scene.bodies.size(); ++c)
+      mesh.apart[(scene.strips.size() + b) * n + scene.strips.size() + c] = foreign(b) && foreign(c) ? 1 : 0;
+  for (const ArticulationPart& part : a.articulations) {
+    JointlyMoved& joint = mesh.together.emplace_back();
+    for (int body : part.links) joint.objects.push_back(object_of(body));
+    joint.first_block = part.first_block, joint.blocks = part.blocks;
+  }
+}
 }  // namespace
 
 SurfaceMesh make_surface(const Scene& scene, const Assembly& a) {
@@ -61,6 +77,7 @@ SurfaceMesh make_surface(const Scene& scene, const Assembly& a) {
                     triangles_of(a, part.first_triangle, part.triangles, part.first_vertex), scene.bodies[b].xi, scene.bodies[b].material,
                     hub ? static_cast<int>(b) : -1);
   }
+  keep_apart(scene, a, mesh);
   return mesh;
 }
 }  // namespace tape

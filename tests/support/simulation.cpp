@@ -11,7 +11,7 @@ Simulation::Simulation(Setup setup, Backend backend)
       stepper_(make_stepper(backend, *world_)) {}
 
 const StepReport& Simulation::step() {
-  report_ = stepper_->step(state_);
+  report_ = stepper_->step(state_, exchange);
   const auto note = [&](const std::string& what) { broken.push_back("step " + std::to_string(state_.step) + ": " + what); };
   newton_max = std::max(newton_max, report_.newton);
   newton_sum += report_.newton;

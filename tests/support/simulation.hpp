@@ -27,6 +27,7 @@ class Simulation {
   /// What a change of energy is measured against [J]: the magnitudes of its parts, and lifting all that moves by its own size.
   Real energy_scale() const;
 
+  Exchange exchange;  ///< of the next step
   bool check_intersections = true;
   bool may_reach_limits = false;    ///< steps in parts and capped CCD are counted only
   std::vector<std::string> broken;  ///< in words, with the step; empty: all is well
