@@ -17,12 +17,16 @@ struct Line {
   Eigen::Quaterniond R0, R1;
 
   Line(const Pose& from, const Pose& to) : p0(from.translation()), p1(to.translation()), R0(from.linear()), R1(to.linear()) {}
-  Real shortest_time(const LineLimits& limits) const {
-    return std::max(MotionProfile::shortest_time((p1 - p0).norm(), limits.speed, limits.acceleration),
-                    MotionProfile::shortest_time(R0.angularDistance(R1), limits.turning_speed, limits.turning_acceleration));
-  }
   Pose at(Real s) const { return Eigen::Translation3d(p0 + s * (p1 - p0)) * R0.slerp(s, R1); }
 };
+
+/// [s] of the move; what is free in all axes takes none.
+Real shortest_time(const Line& line, const FrameTarget& target, const LineLimits& limits) {
+  const Real way = target.position_weight.isZero(0) ? 0 : (line.p1 - line.p0).norm();
+  const Real turn = target.rotation_weight.isZero(0) ? 0 : line.R0.angularDistance(line.R1);
+  return std::max(MotionProfile::shortest_time(way, limits.speed, limits.acceleration),
+                  MotionProfile::shortest_time(turn, limits.turning_speed, limits.turning_acceleration));
+}
 
 void require_positive(Real value, const char* name) {
   if (!(value > 0)) throw InputError(message("line move: ", name, " = ", value, " (allowed: > 0)"));
@@ -41,15 +45,16 @@ std::string reason(const RobotModel& model, const IkResult& found, const VecX& q
 }
 }  // namespace
 
-LineMove line_move(const RobotModel& model, const Frame& frame, const VecX& q_start, const Pose& X_WT, const LineLimits& limits,
+LineMove line_move(const RobotModel& model, const FrameTarget& target, const VecX& q_start, const LineLimits& limits,
                    const IkOptions& options, Real rate, const Pose& X_WB) {
   require_positive(limits.speed, "speed");
   require_positive(limits.acceleration, "acceleration");
   require_positive(limits.turning_speed, "turning speed");
   require_positive(limits.turning_acceleration, "turning acceleration");
   require_positive(rate, "rate");
-  const Line line(frame_pose(link_poses(model, q_start, X_WB), frame), X_WT);
-  const Real duration = line.shortest_time(limits);
+  const Line line(frame_pose(link_poses(model, q_start, X_WB), target.frame), target.X_WT);
+  const Real duration = shortest_time(line, target, limits);
+  FrameTarget next = target;
   IkOptions near = options;
   near.restarts = 0;
 
@@ -58,8 +63,9 @@ LineMove line_move(const RobotModel& model, const Frame& frame, const VecX& q_st
   const auto commands = static_cast<long>(std::ceil(duration * rate * (1 - kRoundOff)));
   for (long i = 1; i <= commands; ++i) {
     const Real s = MotionProfile::at(static_cast<Real>(i) / static_cast<Real>(commands)).value;
+    next.X_WT = line.at(s);
     const VecX& q_before = move.trajectory.knots.back();
-    const IkResult found = solve_ik(model, {{frame, line.at(s)}}, q_before, near, X_WB);
+    const IkResult found = solve_ik(model, {next}, q_before, near, X_WB);
     move.failure = reason(model, found, q_before, 1 / rate);
     if (!move.failure.empty()) return move;
     move.trajectory.times.push_back(static_cast<Real>(i) / rate);

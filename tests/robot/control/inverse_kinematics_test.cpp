@@ -89,6 +89,36 @@ TEST(InverseKinematics, AJointAtItsLimitLeavesTheOthersToComeAsNearAsTheyCan) {
   EXPECT_NEAR(found.position_error, (target - elbow).norm() - 0.2, 1e-9);
 }
 
+TEST(InverseKinematics, AJointAtItsLimitLeavesTheWholeStepToTheOthers) {
+  RobotModel slides;
+  slides.links = {{.name = "base"}, {.name = "a"}, {.name = "b"}};
+  slides.joints = {{.name = "first", .type = JointType::prismatic, .upper = 0},
+                   {.name = "second", .type = JointType::prismatic, .parent = 1}};
+  slides.frames = {{"tip", 2, Pose::Identity()}};
+  // Both slide along x. The step of both together would be cut in half at every iteration, (1/2)^4 of the way would be left.
+  const IkResult found = solve_ik(slides, {point(slides, {0.3, 0, 0})}, VecX::Zero(2), {.max_iterations = 4, .restarts = 0});
+  EXPECT_TRUE(found.converged);
+  EXPECT_EQ(found.q[0], 0);
+}
+
+TEST(InverseKinematics, OfARotationThatCannotBeReachedTheLeastWeightedErrorIsFound) {
+  RobotModel hinge;
+  hinge.links = {{.name = "base"}, {.name = "a"}};
+  hinge.joints = {{.name = "hinge", .axis = Vec3(1, 2, 3).normalized()}};
+  hinge.frames = {{"tip", 1, Pose::Identity()}};
+  FrameTarget target{*hinge.find_frame("tip"), Pose(Eigen::AngleAxisd(1.9, Vec3(3, -1, 1).normalized())), Vec3::Zero(), Vec3(1, 0.5, 2)};
+  const auto cost = [&](Real q) {
+    const Eigen::AngleAxisd turn(target.X_WT.linear().transpose() * tip(hinge, VecX::Constant(1, q)).linear());
+    return (target.rotation_weight.asDiagonal() * (turn.angle() * turn.axis())).norm();
+  };
+  Real best = 0;
+  for (int i = -31400; i <= 31400; ++i)
+    if (cost(1e-4 * i) < cost(best)) best = 1e-4 * i;
+  const IkResult found = solve_ik(hinge, {target}, VecX::Constant(1, best + 0.3));
+  EXPECT_FALSE(found.converged);
+  EXPECT_NEAR(found.q[0], best, 2e-4);
+}
+
 TEST(InverseKinematics, AnAxisWithoutWeightIsFree) {
   const RobotModel arm = test::planar_arm(0.3, 0.2);
   FrameTarget line = point(arm, {0.35, 5, 0});
@@ -149,6 +179,9 @@ TEST(InverseKinematics, JointsThatFollowMoveAlongAndJointsThatCarryNoTargetStay)
   EXPECT_NEAR(found.q[0], std::acos(0.6), 1e-5);
   EXPECT_EQ(found.q[1], -2 * found.q[0]);
   EXPECT_EQ(found.q[2], 0.123);
+  const IkResult far = solve_ik(arm, {point(arm, {2, 0, 0})}, Vec3(0.2, 0, 0.123));
+  EXPECT_NEAR(far.position_error, 2 - 0.6, 1e-9);
+  EXPECT_EQ(far.q[2], 0.123);  // not even where restarts try others at random
 }
 
 TEST(InverseKinematics, TheBaseCarriesTheArm) {

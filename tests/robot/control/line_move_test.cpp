@@ -24,7 +24,7 @@ TEST(LineMove, TheFrameStaysOnItsLineAndTurnsAboutOneAxisAsTheProfileSays) {
   Pose X1 = X0;
   X1.translation() += way;
   X1.linear() = Eigen::AngleAxisd(0.4, axis) * X0.linear();
-  const LineMove move = line_move(arm, *arm.find_frame("tool"), bent(), X1);
+  const LineMove move = line_move(arm, {*arm.find_frame("tool"), X1}, bent());
   ASSERT_EQ(move.failure, "");
   EXPECT_EQ(move.fraction, 1);
   const Real turn = 15. / 8 * 0.4 / 0.5, shift = 15. / 8 * way.norm() / 0.1;  // [s] at peak speeds of 0.5 rad/s and 0.1 m/s
@@ -44,9 +44,26 @@ TEST(LineMove, APoseThatTheArmCannotHoldEndsItAtOnceAndNamesTheError) {
   const Eigen::Vector2d q0(0.2, 1.5);
   Pose X1 = frame_pose(link_poses(arm, q0), tip);  // two joints cannot move the tip without turning it
   X1.translation().y() += 0.1;
-  const LineMove move = line_move(arm, tip, q0, X1);
+  const LineMove move = line_move(arm, {tip, X1}, q0);
   EXPECT_LT(move.fraction, 1e-3);
   EXPECT_THAT(move.failure, HasSubstr("no joint positions nearer than"));
+}
+
+TEST(LineMove, ItEndsAtALimitRatherThanJumpToAnotherSolution) {
+  RobotModel arm = test::planar_arm(0.3, 0.3);
+  arm.joints[0].lower = 0;
+  const Frame tip = *arm.find_frame("tip");
+  const Eigen::Vector2d q0(0.2, 1.5), beyond(-0.3, 1.5);
+  const FrameTarget target{tip, frame_pose(link_poses(arm, beyond), tip), Vec3::Ones(), Vec3::Zero()};
+  FrameTarget near = target;
+  near.X_WT = frame_pose(link_poses(arm, Eigen::Vector2d(0.1, 1.5)), tip);
+  EXPECT_NEAR(line_move(arm, near, q0, {.turning_speed = 0.01}).trajectory.end(), 15. / 8 * 2 * 0.6 * std::cos(0.75) * std::sin(0.05) / 0.1,
+              0.01);                                   // turning takes no time
+  EXPECT_TRUE(solve_ik(arm, {target}, q0).converged);  // with the elbow on its other side
+  const LineMove move = line_move(arm, target, q0);
+  EXPECT_NE(move.failure, "");
+  EXPECT_GT(move.fraction, 0.2);
+  for (const VecX& q : move.trajectory.knots) EXPECT_GT(q[1], 1);  // the elbow has stayed on its side
 }
 
 TEST(LineMove, ItEndsWhereTheTargetIsOutOfReach) {
@@ -54,7 +71,7 @@ TEST(LineMove, ItEndsWhereTheTargetIsOutOfReach) {
   const Pose X0 = tool_at(arm, bent());
   Pose X1 = X0;
   X1.translation() += Vec3(2, 0, 0);
-  const LineMove move = line_move(arm, *arm.find_frame("tool"), bent(), X1, {.speed = 1, .acceleration = 5});
+  const LineMove move = line_move(arm, {*arm.find_frame("tool"), X1}, bent(), {.speed = 1, .acceleration = 5});
   EXPECT_NE(move.failure, "");
   EXPECT_GT(move.fraction, 0);
   EXPECT_LT(move.fraction, 1);
@@ -68,7 +85,7 @@ TEST(LineMove, AJointThatWouldHaveToMoveTooFastEndsIt) {
   for (Joint& joint : arm.joints) joint.velocity = 0.05;
   Pose X1 = tool_at(arm, bent());
   X1.translation() += Vec3(0.1, 0, 0);
-  const LineMove move = line_move(arm, *arm.find_frame("tool"), bent(), X1);
+  const LineMove move = line_move(arm, {*arm.find_frame("tool"), X1}, bent());
   EXPECT_THAT(move.failure, HasSubstr("(allowed: 0.05)"));
   for (std::size_t k = 1; k < move.trajectory.knots.size(); ++k)
     EXPECT_LE((move.trajectory.knots[k] - move.trajectory.knots[k - 1]).cwiseAbs().maxCoeff(), 0.05 * 0.01 * (1 + 1e-8));
@@ -76,7 +93,7 @@ TEST(LineMove, AJointThatWouldHaveToMoveTooFastEndsIt) {
 
 TEST(LineMove, ToWhereTheFrameIsItTakesNoTime) {
   const RobotModel arm = test::seven_joint_arm();
-  const LineMove move = line_move(arm, *arm.find_frame("tool"), bent(), tool_at(arm, bent()));
+  const LineMove move = line_move(arm, {*arm.find_frame("tool"), tool_at(arm, bent())}, bent());
   EXPECT_EQ(move.failure, "");
   EXPECT_EQ(move.trajectory.knots.back(), bent());
   EXPECT_LE(move.trajectory.end(), 0.01);  // one command at most, for round-off
@@ -84,6 +101,9 @@ TEST(LineMove, ToWhereTheFrameIsItTakesNoTime) {
 
 TEST(LineMove, LimitsThatAreNotPositiveAreRefused) {
   const RobotModel arm = test::seven_joint_arm();
-  EXPECT_THAT([&] { line_move(arm, *arm.find_frame("tool"), bent(), Pose::Identity(), {.speed = 0}); },
-              ThrowsMessage<InputError>(HasSubstr("speed = 0 (allowed: > 0)")));
+  EXPECT_THAT(
+      [&] {
+        line_move(arm, {*arm.find_frame("tool"), Pose::Identity()}, bent(), {.speed = 0});
+      },
+      ThrowsMessage<InputError>(HasSubstr("speed = 0 (allowed: > 0)")));
 }

@@ -39,6 +39,8 @@ TEST(TrajectoryFile, BetweenRowsPositionsAreLinearAndVelocityIsTheirDifference) 
   const auto point = path.at(0.05);
   EXPECT_NEAR(point.q[0], 0.4, 1e-15);
   EXPECT_NEAR(point.v[0], 20, 1e-12);
+  EXPECT_NEAR(path.at(0.04).v[0], 20, 1e-12);  // at a row: of what follows
+  EXPECT_NEAR(path.at(0).v[0], 5, 1e-12);
   const std::vector<VecX> q = sample(path);
   ASSERT_EQ(q.size(), 9u);
   EXPECT_NEAR(q[1][0], 0.05, 1e-15);
