@@ -34,26 +34,33 @@ FrameTarget point(const RobotModel& model, const Vec3& p) {
 }  // namespace
 
 TEST(InverseKinematics, ReachesAtLeast99In100RandomPosesOfASevenJointArmWithinItsLimits) {
-  const RobotModel arm = test::seven_joint_arm();
+  RobotModel arm = test::seven_joint_arm();
+  arm.links.push_back({.name = "finger"});
+  arm.joints.push_back({.name = "finger", .parent = 7, .lower = -1, .upper = 1});
   const Frame tool = *arm.find_frame("tool");
   std::mt19937_64 random(20240501);
-  int reached = 0;
+  int reached = 0, at_once = 0;
   long iterations = 0;
   for (int i = 0; i < 1000; ++i) {
     const Pose X_WT = tip(arm, random_positions(arm, random), "tool");
-    const IkResult found = solve_ik(arm, {{tool, X_WT}}, random_positions(arm, random));
+    const VecX q_start = random_positions(arm, random);
+    const IkResult found = solve_ik(arm, {{tool, X_WT}}, q_start);
     const Pose X_WF = tip(arm, found.q, "tool");
     const Real position_error = (X_WF.translation() - X_WT.translation()).norm(), rotation_error = angle_between(X_WF, X_WT);
     EXPECT_NEAR(found.position_error, position_error, 1e-12);
     EXPECT_NEAR(found.rotation_error, rotation_error, 1e-9);
     EXPECT_TRUE(within_limits(arm, found.q));
+    EXPECT_EQ(found.q[7], q_start[7]);  // carries no target, and restarts leave it alone too
+    at_once += solve_ik(arm, {{tool, X_WT}}, q_start, {.restarts = 0}).converged;
     EXPECT_EQ(found.converged, found.position_error <= 1e-6 && found.rotation_error <= 1e-6);
     reached += position_error < 1e-6 && rotation_error < 1e-6;
     iterations += found.iterations;
   }
   RecordProperty("reached_of_1000", reached);
+  RecordProperty("reached_without_restarts", at_once);
   RecordProperty("mean_iterations", static_cast<int>(iterations / 1000));
   EXPECT_GE(reached, 990);
+  EXPECT_LT(at_once, reached);  // there are targets that need a restart
 }
 
 TEST(InverseKinematics, BothElbowsOfAPlanarArmAreFoundFromTheirSide) {
@@ -179,9 +186,6 @@ TEST(InverseKinematics, JointsThatFollowMoveAlongAndJointsThatCarryNoTargetStay)
   EXPECT_NEAR(found.q[0], std::acos(0.6), 1e-5);
   EXPECT_EQ(found.q[1], -2 * found.q[0]);
   EXPECT_EQ(found.q[2], 0.123);
-  const IkResult far = solve_ik(arm, {point(arm, {2, 0, 0})}, Vec3(0.2, 0, 0.123));
-  EXPECT_NEAR(far.position_error, 2 - 0.6, 1e-9);
-  EXPECT_EQ(far.q[2], 0.123);  // not even where restarts try others at random
 }
 
 TEST(InverseKinematics, TheBaseCarriesTheArm) {
