@@ -14,9 +14,10 @@ LinkId id(const btCollisionObject& collider) { return {collider.getUserIndex(), 
 /// Which links may touch is asked in every substep, so that it may change at any time.
 class Physics::Dispatcher : public btCollisionDispatcher {
  public:
-  Dispatcher(btCollisionConfiguration* configuration, const Physics& physics) : btCollisionDispatcher(configuration), physics_(physics) {
+  Dispatcher(btDefaultCollisionConfiguration& configuration, const Physics& physics)
+      : btCollisionDispatcher(&configuration), physics_(physics) {
     setDispatcherFlags(getDispatcherFlags() & ~CD_USE_RELATIVE_CONTACT_BREAKING_THRESHOLD);
-    setMultipoint(*static_cast<btDefaultCollisionConfiguration*>(configuration));
+    set_algorithms(configuration);
   }
   bool needsCollision(const btCollisionObject* a, const btCollisionObject* b) override {
     if (a->getCollisionShape()->getShapeType() == EMPTY_SHAPE_PROXYTYPE || b->getCollisionShape()->getShapeType() == EMPTY_SHAPE_PROXYTYPE)
@@ -26,19 +27,25 @@ class Physics::Dispatcher : public btCollisionDispatcher {
   }
 
  private:
-  /// A face that lies on another touches it in up to four points. Bullet finds them by tilting one of both around; its own way for two
-  /// boxes sees only points that already penetrate, so boxes go the way of all convex shapes.
-  void setMultipoint(btDefaultCollisionConfiguration& configuration) {
+  /// A face that lies on another touches it in up to four points. Bullet finds them by tilting one of both around. Its own way for two
+  /// boxes sees only points that already penetrate, so boxes go the way of all convex shapes. A sphere touches in one point.
+  void set_algorithms(btDefaultCollisionConfiguration& configuration) {
     constexpr int kTilts = 8, kPoints = 4;
     configuration.setConvexConvexMultipointIterations(kTilts, kPoints);
-    registerCollisionCreateFunc(BOX_SHAPE_PROXYTYPE, BOX_SHAPE_PROXYTYPE,
-                                configuration.getCollisionAlgorithmCreateFunc(CONVEX_HULL_SHAPE_PROXYTYPE, CONVEX_HULL_SHAPE_PROXYTYPE));
+    constexpr int kBox = BOX_SHAPE_PROXYTYPE, kHull = CONVEX_HULL_SHAPE_PROXYTYPE, kSphere = SPHERE_SHAPE_PROXYTYPE;
+    registerCollisionCreateFunc(kBox, kBox, configuration.getCollisionAlgorithmCreateFunc(kHull, kHull));
+    for (const int shape : {kBox, kHull}) {
+      registerCollisionCreateFunc(shape, kSphere, &one_point_);
+      registerCollisionCreateFunc(kSphere, shape, &one_point_);
+    }
   }
   static bool moves(const btCollisionObject& object) {
     const auto& collider = static_cast<const btMultiBodyLinkCollider&>(object);
     return collider.m_link >= 0 || !collider.m_multiBody->hasFixedBase();
   }
   const Physics& physics_;
+  btGjkEpaPenetrationDepthSolver penetration_;
+  btConvexConvexAlgorithm::CreateFunc one_point_{&penetration_};
 };
 
 /// Bullet's solver, in which a robot gives way to an impulse as it does with its drives' stiffness and damping in the substep, and
@@ -122,7 +129,7 @@ class Physics::BulletWorld : public btMultiBodyDynamicsWorld {
 Physics::Physics(const WorldParams& params)
     : params_(params),
       configuration_(std::make_unique<btDefaultCollisionConfiguration>()),
-      dispatcher_(std::make_unique<Dispatcher>(configuration_.get(), *this)),
+      dispatcher_(std::make_unique<Dispatcher>(*configuration_, *this)),
       broadphase_(std::make_unique<btSimpleBroadphase>()),
       solver_(std::make_unique<Solver>()),
       world_(std::make_unique<BulletWorld>(*this, params)) {
