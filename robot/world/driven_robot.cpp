@@ -110,9 +110,9 @@ void DrivenRobot::move_freely() {
   constexpr int kMidpoints = 3;  // evaluations of the Coriolis forces at the mean velocity: an error of (h omega)^3
   law_ = drives_.law(q_, h_);
   const MatX K = M_ + h_ * on_joints(law_.damping + viscous_);
-  const MatX inverse = motions_ * MatX(motions_.transpose() * K * motions_).llt().solve(motions_.transpose());
+  give_ = motions_ * MatX(motions_.transpose() * K * motions_).llt().solve(motions_.transpose());
   const MatX B = body_.to_bullet_velocity();
-  impulse_response_ = B * inverse * B.transpose();
+  impulse_response_ = B * give_ * B.transpose();
 
   VecX pull = VecX::Zero(body_.dof());  // takes back what mimicking joints have drifted
   pull.tail(body_.joints()) = (follow(q_) - q_) / h_;
@@ -121,7 +121,7 @@ void DrivenRobot::move_freely() {
   v_free_ = v_start_;
   for (int i = 0; i < kMidpoints; ++i) {
     const VecX a = body_.acceleration((v_start_ + v_free_) / 2, tau_, gravity_);
-    v_free_ = pull + inverse * (M_ * (v_start_ + h_ * a) + drive - K * pull);
+    v_free_ = pull + give_ * (M_ * (v_start_ + h_ * a) + drive - K * pull);
   }
   body_.set_v(v_free_);
 }
@@ -131,6 +131,14 @@ bool DrivenRobot::update_saturation(bool release) {
   return drives_.update_saturation(q_, v_end_.tail(body_.joints()), h_, release);
 }
 
+void DrivenRobot::set_drift() {
+  if (body_.base_dof() == 0) return;
+  const VecX a = body_.acceleration((v_start_ + v_end_) / 2, VecX::Zero(body_.dof()), Vec3::Zero());
+  VecX v = v_end_;
+  v.head<6>() -= h_ / 2 * (give_ * (M_ * a)).head<6>();
+  body_.set_v(v);
+}
+
 void DrivenRobot::end() {
   drive_impulse += h_ * (law_.force - law_.damping.cwiseProduct(v_end_.tail(body_.joints())));
   body_.refresh();
@@ -138,7 +146,7 @@ void DrivenRobot::end() {
   Eigen::Matrix<Real, 6, 1> momentum = (M_ * (v_start_ + v_end_ - v_free_) + h_ * (tau_ + weight_)).head<6>();
   momentum.tail<3>() += (origin_ - body_.X_WL(0).translation()).cross(momentum.head<3>());
   const MatX M = body_.mass_matrix();
-  VecX v = body_.v();
+  VecX v = v_end_;
   v.head<6>() += M.topLeftCorner<6, 6>().llt().solve(momentum - (M * v).head<6>());
   body_.set_v(v);
 }

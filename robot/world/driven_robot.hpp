@@ -37,6 +37,8 @@ class DrivenRobot {
   const MatX& impulse_response() const { return impulse_response_; }
   /// After contacts and the like; true if a drive must enter or leave its limit, and the substep be made again.
   bool update_saturation(bool release);
+  /// Sets the velocity with which the configuration moves: a free base turns as the Coriolis forces make it in mid substep.
+  void set_drift();
   /// After the configuration has changed: gives a free base the momentum that it has got (README.md), books the drives' impulse.
   void end();
 
@@ -58,6 +60,6 @@ class DrivenRobot {
   VecX tau_, q_, v_start_, v_free_, v_end_, weight_;
   Vec3 origin_ = Vec3::Zero();  // of the base's frame at the start
   DriveLaw law_;
-  MatX M_, impulse_response_;
+  MatX M_, give_, impulse_response_;  // give: velocity per impulse, [dof x dof]
 };
 }  // namespace robot

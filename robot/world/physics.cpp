@@ -110,6 +110,7 @@ class Physics::BulletWorld : public btMultiBodyDynamicsWorld {
       solve(info);
       for (const auto& robot : physics_.robots_) again |= robot->update_saturation(pass < kReleasing);
     }
+    for (const auto& robot : physics_.robots_) robot->set_drift();
   }
 
  private:
