@@ -222,13 +222,15 @@ MatX Articulation::to_bullet_velocity() const {
   return B;
 }
 
-VecX Articulation::weight(const Vec3& gravity) const {
-  VecX force = VecX::Zero(dof());
+Articulation::Vec6 Articulation::weight(const Vec3& gravity) const {
+  Vec6 weight = Vec6::Zero();
   for (int link = 0; link <= joints(); ++link) {
     const Inertial& i = model_->links[static_cast<std::size_t>(link)].inertial;
-    force += i.mass * (jacobian(link, X_WL(link) * i.com).topRows<3>().transpose() * gravity);
+    const Vec3 force = i.mass * gravity, arm = X_WL(link) * i.com - X_WL(0).translation();
+    weight.head<3>() += force;
+    weight.tail<3>() += arm.cross(force);
   }
-  return force;
+  return weight;
 }
 
 VecX Articulation::acceleration(const VecX& v, const VecX& tau, const Vec3& gravity) {

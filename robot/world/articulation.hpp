@@ -33,15 +33,15 @@ class Articulation {
   MatX mass_matrix() const;
   /// [6 + nj x dof] Bullet's velocities by v; its transpose takes Bullet's forces to ours.
   MatX to_bullet_velocity() const;
-  /// Weight of the links as a force [dof]; what a free base feels of it is exact.
-  VecX weight(const Vec3& gravity) const;
+  /// Force [N] and torque [N m] of the weight about the base frame's origin.
+  Eigen::Matrix<Real, 6, 1> weight(const Vec3& gravity) const;
   /// dv/dt at this configuration if the velocity were v, under the weight, tau [dof], and nothing else.
   VecX acceleration(const VecX& v, const VecX& tau, const Vec3& gravity);
 
  private:
   using Vec6 = Eigen::Matrix<Real, 6, 1>;
   using Mat6 = Eigen::Matrix<Real, 6, 6>;
-  Pose X_LC(int link) const { return X_LC_[static_cast<std::size_t>(link)]; }
+  const Pose& X_LC(int link) const { return X_LC_[static_cast<std::size_t>(link)]; }
   void setup_link(int joint);
   void add_collider(int index, int link);
   Vec6 joint_motion(int joint) const;

@@ -99,8 +99,8 @@ void DrivenRobot::begin(const VecX& tau, const Vec3& gravity, Real h) {
   q_ = body_.q();
   v_start_ = body_.v();
   origin_ = body_.X_WL(0).translation();
-  M_ = body_.mass_matrix();
   weight_ = body_.weight(gravity);
+  M_ = body_.mass_matrix();
   for (const auto& constraint : constraints_)
     if (constraint->getConstraintType() == MULTIBODY_CONSTRAINT_1DOF_JOINT_MOTOR)
       constraint->setMaxAppliedImpulse(h * body_.model().joints[static_cast<std::size_t>(constraint->getLinkA())].friction);
@@ -143,7 +143,7 @@ void DrivenRobot::end() {
   drive_impulse += h_ * (law_.force - law_.damping.cwiseProduct(v_end_.tail(body_.joints())));
   body_.refresh();
   if (body_.base_dof() == 0) return;
-  Eigen::Matrix<Real, 6, 1> momentum = (M_ * (v_start_ + v_end_ - v_free_) + h_ * (tau_ + weight_)).head<6>();
+  Eigen::Matrix<Real, 6, 1> momentum = (M_ * (v_start_ + v_end_ - v_free_) + h_ * tau_).head<6>() + h_ * weight_;
   momentum.tail<3>() += (origin_ - body_.X_WL(0).translation()).cross(momentum.head<3>());
   const MatX M = body_.mass_matrix();
   VecX v = v_end_;

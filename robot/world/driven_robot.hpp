@@ -57,7 +57,8 @@ class DrivenRobot {
   // of the substep
   Real h_ = 0;
   Vec3 gravity_ = Vec3::Zero();
-  VecX tau_, q_, v_start_, v_free_, v_end_, weight_;
+  VecX tau_, q_, v_start_, v_free_, v_end_;
+  Eigen::Matrix<Real, 6, 1> weight_ = Eigen::Matrix<Real, 6, 1>::Zero();
   Vec3 origin_ = Vec3::Zero();  // of the base's frame at the start
   DriveLaw law_;
   MatX M_, give_, impulse_response_;  // give: velocity per impulse, [dof x dof]

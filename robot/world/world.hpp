@@ -7,7 +7,7 @@ namespace robot {
 struct WorldParams {
   Vec3 gravity = {0, 0, -9.81};  ///< [m/s^2]
   Real substep = 1e-3;           ///< [s] longest step of the physics
-  int iterations = 100;          ///< most sweeps of the contact solver over its rows in a substep
+  int iterations = 50;           ///< most sweeps of the contact solver over its rows in a substep
   Real contact_erp = 0.1;        ///< share of a penetration that a substep takes back
   Real limit_erp = 0.2;          ///< share of a joint limit's violation that a substep takes back
 };
