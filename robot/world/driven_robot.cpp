@@ -114,14 +114,12 @@ void DrivenRobot::move_freely() {
   const MatX B = body_.to_bullet_velocity();
   impulse_response_ = B * give_ * B.transpose();
 
-  VecX pull = VecX::Zero(body_.dof());  // takes back what mimicking joints have drifted
-  pull.tail(body_.joints()) = (follow(q_) - q_) / h_;
   VecX drive = VecX::Zero(body_.dof());
   drive.tail(body_.joints()) = h_ * law_.force;
   v_free_ = v_start_;
   for (int i = 0; i < kMidpoints; ++i) {
     const VecX a = body_.acceleration((v_start_ + v_free_) / 2, tau_, gravity_);
-    v_free_ = pull + give_ * (M_ * (v_start_ + h_ * a) + drive - K * pull);
+    v_free_ = give_ * (M_ * (v_start_ + h_ * a) + drive);
   }
   body_.set_v(v_free_);
 }

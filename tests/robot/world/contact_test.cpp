@@ -142,12 +142,21 @@ TEST(SettingBack, AnotherWorldGoesOnFromASnapshotToTheBit) {
     one.command(1, sway(i));
     one.step(0.01);
   }
+  ASSERT_NE(one.saturation(1), std::vector<int>(5, 0));
   other.restore(one.save());
+  EXPECT_EQ(one.response(1, 0.01), other.response(1, 0.01));
   for (int i = 0; i < 20; ++i) {
     one.step(0.01);
     other.step(0.01);
     ASSERT_EQ(one.save().numbers, other.save().numbers);
   }
+}
+
+TEST(SettingBack, AForceOfZeroIsNoForce) {
+  World one = poking(), other = poking();
+  one.step(0.1);
+  other.step(0.1, {VecX::Zero(0), VecX::Zero(5), VecX::Zero(6), VecX::Zero(6)});
+  EXPECT_EQ(one.save().numbers, other.save().numbers);
 }
 
 TEST(SettingBack, TwoRunsAreTheSameToTheBit) {

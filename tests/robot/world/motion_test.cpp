@@ -77,8 +77,7 @@ TEST(Motion, AChainThatSwingsFreelyKeepsItsEnergy) {
     scale = std::max(scale, kinetic);
     worst = std::max(worst, std::abs(kinetic + potential() - start));
   }
-  RecordProperty("energy_error", std::to_string(worst / scale));
-  EXPECT_LT(worst, 0.03 * scale);
+  EXPECT_LT(worst, 0.03 * scale);  // velocity and position are half a substep apart
 }
 
 TEST(Motion, AFreeRobotsMomentumChangesByTheExternalImpulseAlone) {
@@ -112,8 +111,7 @@ TEST(Motion, ATumblingBoxKeepsItsEnergy) {
     world.step(0.01);
     worst = std::max(worst, std::abs(kinetic_energy(world, robot) / start - 1));
   }
-  RecordProperty("energy_error", std::to_string(worst));
-  EXPECT_LT(worst, 0.01);
+  EXPECT_LT(worst, 1e-6);  // (h omega)^2 = 2.5e-5; a first-order turn is wrong by 5e-3
 }
 
 TEST(Motion, JointFrictionHoldsBelowItsTorqueAndLetsSlideAbove) {
@@ -165,7 +163,7 @@ TEST(Motion, AMimickingJointFollowsUnderLoad) {
     load << 0.1, -2 * std::sin(0.2 * i);
     world.step(0.01, {load});
     const VecX q = world.state(robot).q;
-    EXPECT_NEAR(q[1], 1.3 * q[0] + 0.1, 1e-6);
+    EXPECT_NEAR(q[1], 1.3 * q[0] + 0.1, 1e-13);
   }
   for (int i = 0; i < 300; ++i) world.step(0.01, {VecX::Unit(2, 1)});  // virtual work: 1 N m on the follower is 1.3 on the leader
   const RobotState s = world.state(robot);
