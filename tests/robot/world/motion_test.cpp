@@ -70,14 +70,15 @@ TEST(Motion, AChainThatSwingsFreelyKeepsItsEnergy) {
     return sum;
   };
   const Real start = potential();
-  Real worst = 0, scale = 0;
-  for (int i = 0; i < 500; ++i) {
+  Real scale = 0, drift = 0;
+  constexpr int kSteps = 500, kMean = 200;  // a momentary error has velocity and position half a substep apart
+  for (int i = 0; i < kSteps; ++i) {
     world.step(0.01);
     const Real kinetic = kinetic_energy(world, robot);
     scale = std::max(scale, kinetic);
-    worst = std::max(worst, std::abs(kinetic + potential() - start));
+    if (i >= kSteps - kMean) drift += (kinetic + potential() - start) / kMean;
   }
-  EXPECT_LT(worst, 0.03 * scale);  // velocity and position are half a substep apart
+  EXPECT_LT(std::abs(drift), 0.005 * scale);  // Coriolis forces at the start of the substep take 5 %
 }
 
 TEST(Motion, AFreeRobotsMomentumChangesByTheExternalImpulseAlone) {
