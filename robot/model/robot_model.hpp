@@ -42,8 +42,8 @@ struct Shape {
   Kind kind = Kind::box;
   Pose X_LS = Pose::Identity();      ///< of the shape in the link's frame
   Vec3 size = Vec3::Zero();          ///< [m] box: full lengths; cylinder: radius, radius, length along z; sphere: radius in all
-  TriangleMesh mesh;                 ///< [m] in the shape's frame, of every kind; closed for boxes, cylinders and spheres
-  std::string file;                  ///< of a mesh
+  TriangleMesh mesh = {};            ///< [m] in the shape's frame, of every kind; closed for boxes, cylinders and spheres
+  std::string file = {};             ///< of a mesh
   Vec3 color = Vec3::Constant(0.7);  ///< [0, 1] red, green, blue
 };
 
@@ -88,11 +88,11 @@ struct Frame {
 /// A tree of links joined by one-degree-of-freedom joints; link 0 is the base. Immutable once read.
 struct RobotModel {
   std::string name;
-  std::vector<Link> links;                       ///< [nj + 1], parents first
-  std::vector<Joint> joints;                     ///< [nj]
-  std::vector<Frame> frames;                     ///< of merged links
-  std::vector<std::pair<int, int>> may_overlap;  ///< pairs of links that never collide: neighbours, and those that an SRDF file names
-  std::vector<std::string> notes;                ///< what was assumed where the file was silent, one sentence each
+  std::vector<Link> links = {};                       ///< [nj + 1], parents first
+  std::vector<Joint> joints = {};                     ///< [nj]
+  std::vector<Frame> frames = {};                     ///< of merged links
+  std::vector<std::pair<int, int>> may_overlap = {};  ///< pairs of links that never collide: neighbours, and those that an SRDF file names
+  std::vector<std::string> notes = {};                ///< what was assumed where the file was silent, one sentence each
 
   /// -1 if there is none of that name.
   int find_joint(const std::string& name) const;

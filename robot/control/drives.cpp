@@ -1,0 +1,105 @@
+#include "robot/control/drives.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace robot {
+namespace {
+void require_count(const std::string& robot, const char* what, std::size_t given, std::size_t joints) {
+  if (given != joints)
+    throw InputError("robot " + robot + ": " + std::to_string(given) + " " + what + " for " + std::to_string(joints) + " joints");
+}
+void require(bool good, const std::string& robot, const std::string& joint, const char* what, Real value, const char* range) {
+  if (!good) throw InputError("robot " + robot + ", joint " + joint + ": " + what + " " + std::to_string(value) + " is not " + range);
+}
+}  // namespace
+
+Drives::Drives(const RobotModel& model, const std::vector<DriveGains>& gains)
+    : name_(model.name), gains_(gains), commands_(model.joints.size()), saturation_(model.joints.size(), 0) {
+  if (gains.empty()) gains_.resize(model.joints.size());
+  require_count(name_, "drive gains", gains_.size(), model.joints.size());
+  for (std::size_t k = 0; k < gains_.size(); ++k) {
+    DriveGains& g = gains_[k];
+    const Joint& joint = model.joints[k];
+    require(g.kp >= 0 && std::isfinite(g.kp), name_, joint.name, "kp", g.kp, "finite and >= 0");
+    require(g.kd >= 0 && std::isfinite(g.kd), name_, joint.name, "kd", g.kd, "finite and >= 0");
+    require(g.effort >= 0, name_, joint.name, "effort limit", g.effort, ">= 0");
+    g.effort = std::min(g.effort, joint.effort);
+    if (joint.mimic) g = {.effort = 0};
+  }
+}
+
+void Drives::command(const std::vector<JointCommand>& commands) {
+  require_count(name_, "commands", commands.size(), commands_.size());
+  for (std::size_t k = 0; k < commands.size(); ++k)
+    for (const Real value : {commands[k].position, commands[k].velocity, commands[k].effort})
+      require(std::isfinite(value), name_, std::to_string(k), "command", value, "finite");
+  commands_ = commands;
+}
+
+DriveLaw Drives::unclamped(const VecX& q, Real h) const {
+  const Eigen::Index n = q.size();
+  DriveLaw law{VecX::Zero(n), VecX::Zero(n)};
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const DriveGains& g = gains_[static_cast<std::size_t>(k)];
+    const JointCommand& c = commands_[static_cast<std::size_t>(k)];
+    const Real kp = c.kind == JointCommand::Kind::position ? g.kp : 0;
+    const Real kd = c.kind == JointCommand::Kind::effort ? 0 : g.kd;
+    law.force[k] = kp * (c.position - q[k]) + kd * c.velocity + c.effort;
+    law.damping[k] = kd + h * kp;
+  }
+  return law;
+}
+
+DriveLaw Drives::law(const VecX& q, Real h) const {
+  DriveLaw law = unclamped(q, h);
+  for (Eigen::Index k = 0; k < q.size(); ++k) {
+    const std::size_t j = static_cast<std::size_t>(k);
+    if (saturation_[j] == 0) continue;
+    law.force[k] = saturation_[j] * gains_[j].effort;
+    law.damping[k] = 0;
+  }
+  return law;
+}
+
+bool Drives::update_saturation(const VecX& q, const VecX& v, Real h, bool release) {
+  constexpr Real kTie = 1e-12;  // relative: a force at its limit to round-off stays where it is
+  const DriveLaw law = unclamped(q, h);
+  bool changed = false;
+  for (Eigen::Index k = 0; k < q.size(); ++k) {
+    const std::size_t j = static_cast<std::size_t>(k);
+    const Real force = law.force[k] - law.damping[k] * v[k], limit = gains_[j].effort;
+    int side = saturation_[j];
+    if (side == 0 && std::abs(force) > limit * (1 + kTie)) side = force > 0 ? 1 : -1;
+    if (side != 0 && release && side * force < limit * (1 - kTie)) side = 0;
+    changed |= side != saturation_[j];
+    saturation_[j] = side;
+  }
+  return changed;
+}
+
+VecX Drives::stiffness() const {
+  VecX kp = VecX::Zero(static_cast<Eigen::Index>(gains_.size()));
+  for (std::size_t k = 0; k < gains_.size(); ++k)
+    if (saturation_[k] == 0 && commands_[k].kind == JointCommand::Kind::position) kp[static_cast<Eigen::Index>(k)] = gains_[k].kp;
+  return kp;
+}
+
+VecX Drives::damping() const {
+  VecX kd = VecX::Zero(static_cast<Eigen::Index>(gains_.size()));
+  for (std::size_t k = 0; k < gains_.size(); ++k)
+    if (saturation_[k] == 0 && commands_[k].kind != JointCommand::Kind::effort) kd[static_cast<Eigen::Index>(k)] = gains_[k].kd;
+  return kd;
+}
+
+MatX held_force_response(const MatX& M, const MatX& stiffness, const MatX& damping, Real h, int count) {
+  const Eigen::LLT<MatX> lhs(M + h * damping + h * h * stiffness);
+  MatX dx = MatX::Zero(M.rows(), M.cols()), dv = dx;
+  for (int s = 0; s < count; ++s) {
+    dv = lhs.solve(M * dv - h * stiffness * dx + h * MatX::Identity(M.rows(), M.cols()));
+    dx += h * dv;
+  }
+  return (dx + dx.transpose()) / 2;
+}
+}  // namespace robot

@@ -1,0 +1,151 @@
+#include "robot/world/driven_robot.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+namespace robot {
+DrivenRobot::DrivenRobot(int index, std::shared_ptr<const RobotModel> model, const RobotParams& params)
+    : drive_impulse(VecX::Zero(static_cast<Eigen::Index>(model->joints.size()))),
+      body_(index, model, params.X_WB, params.fixed_base),
+      drives_(*model, params.drives),
+      viscous_(body_.joints()) {
+  motions_ = MatX::Identity(body_.dof(), body_.dof());
+  std::vector<Eigen::Index> independent;
+  for (Eigen::Index k = 0; k < body_.base_dof(); ++k) independent.push_back(k);
+  for (Eigen::Index k = 0; k < body_.joints(); ++k) {
+    const Joint& joint = model->joints[static_cast<std::size_t>(k)];
+    const Eigen::Index row = body_.base_dof() + k;
+    viscous_[k] = joint.damping;
+    if (!joint.mimic) {
+      independent.push_back(row);
+      continue;
+    }
+    const int leader = joint.mimic->joint;
+    if (leader < 0 || leader >= body_.joints() || model->joints[static_cast<std::size_t>(leader)].mimic)
+      throw InputError("robot " + model->name + ", joint " + joint.name + ": it mimics no joint that moves by itself");
+    motions_(row, row) = 0;
+    motions_(row, body_.base_dof() + leader) = joint.mimic->multiplier;
+  }
+  motions_ = MatX(motions_(Eigen::all, independent));
+  body_.bullet().setUserPointer(this);
+  add_constraints();
+  body_.set_q(follow(body_.q()));
+  body_.refresh();
+  for (int link = 0; link <= body_.joints(); ++link) set_friction(link, params.friction);
+}
+
+void DrivenRobot::add_constraints() {
+  for (int k = 0; k < body_.joints(); ++k) {
+    const Joint& joint = body_.model().joints[static_cast<std::size_t>(k)];
+    if (joint.friction > 0) constraints_.push_back(std::make_unique<btMultiBodyJointMotor>(&body_.bullet(), k, 0, 0));
+    if (std::isinf(joint.lower) && std::isinf(joint.upper)) continue;
+    constraints_.push_back(std::make_unique<btMultiBodyJointLimitConstraint>(&body_.bullet(), k, joint.lower, joint.upper));
+    constraints_.back()->setMaxAppliedImpulse(BT_LARGE_FLOAT);
+  }
+}
+
+MatX DrivenRobot::on_joints(const VecX& diagonal) const {
+  VecX all = VecX::Zero(body_.dof());
+  all.tail(diagonal.size()) = diagonal;
+  return all.asDiagonal();
+}
+
+VecX DrivenRobot::follow(VecX q) const {
+  for (Eigen::Index k = 0; k < q.size(); ++k)
+    if (const auto& mimic = body_.model().joints[static_cast<std::size_t>(k)].mimic)
+      q[k] = mimic->multiplier * q[mimic->joint] + mimic->offset;
+  return q;
+}
+
+VecX DrivenRobot::follow_velocity(VecX v) const {
+  const Eigen::Index b = body_.base_dof();
+  for (Eigen::Index k = 0; k < body_.joints(); ++k)
+    if (const auto& mimic = body_.model().joints[static_cast<std::size_t>(k)].mimic) v[b + k] = mimic->multiplier * v[b + mimic->joint];
+  return v;
+}
+
+/// Bullet multiplies both links' coefficients.
+void DrivenRobot::set_friction(int link, Real mu) { body_.collider(link).setFriction(std::sqrt(mu)); }
+
+void DrivenRobot::save(std::vector<Real>& numbers) const {
+  body_.save(numbers);
+  for (const JointCommand& c : drives_.commands())
+    numbers.insert(numbers.end(), {static_cast<Real>(c.kind), c.position, c.velocity, c.effort});
+  for (const int side : drives_.saturation()) numbers.push_back(side);
+}
+
+void DrivenRobot::restore(const Real*& n) {
+  body_.restore(n);
+  std::vector<JointCommand> commands;
+  for (Eigen::Index k = 0; k < body_.joints(); ++k, n += 4)
+    commands.push_back({static_cast<JointCommand::Kind>(static_cast<int>(n[0])), n[1], n[2], n[3]});
+  drives_.command(commands);
+  std::vector<int> saturation;
+  for (Eigen::Index k = 0; k < body_.joints(); ++k) saturation.push_back(static_cast<int>(*n++));
+  drives_.set_saturation(saturation);
+}
+
+MatX DrivenRobot::response(Real h, int count) const {
+  const MatX stiffness = on_joints(drives_.stiffness()), damping = on_joints(drives_.damping() + viscous_);
+  const auto reduced = [&](const MatX& A) -> MatX { return motions_.transpose() * A * motions_; };
+  const MatX S = held_force_response(reduced(body_.mass_matrix()), reduced(stiffness), reduced(damping), h, count);
+  return motions_ * S * motions_.transpose();
+}
+
+void DrivenRobot::begin(const VecX& tau, const Vec3& gravity, Real h) {
+  h_ = h;
+  gravity_ = gravity;
+  tau_ = tau;
+  q_ = body_.q();
+  v_start_ = body_.v();
+  origin_ = body_.X_WL(0).translation();
+  weight_ = body_.weight(gravity);
+  M_ = body_.mass_matrix();
+  for (const auto& constraint : constraints_)
+    if (constraint->getConstraintType() == MULTIBODY_CONSTRAINT_1DOF_JOINT_MOTOR)
+      constraint->setMaxAppliedImpulse(h * body_.model().joints[static_cast<std::size_t>(constraint->getLinkA())].friction);
+}
+
+void DrivenRobot::move_freely() {
+  constexpr int kMidpoints = 3;  // evaluations of the Coriolis forces at the mean velocity: an error of (h omega)^3
+  law_ = drives_.law(q_, h_);
+  const MatX K = M_ + h_ * on_joints(law_.damping + viscous_);
+  give_ = motions_ * MatX(motions_.transpose() * K * motions_).llt().solve(motions_.transpose());
+  const MatX B = body_.to_bullet_velocity();
+  impulse_response_ = B * give_ * B.transpose();
+
+  VecX drive = VecX::Zero(body_.dof());
+  drive.tail(body_.joints()) = h_ * law_.force;
+  v_free_ = v_start_;
+  for (int i = 0; i < kMidpoints; ++i) {
+    const VecX a = body_.acceleration((v_start_ + v_free_) / 2, tau_, gravity_);
+    v_free_ = give_ * (M_ * (v_start_ + h_ * a) + drive);
+  }
+  body_.set_v(v_free_);
+}
+
+bool DrivenRobot::update_saturation(bool release) {
+  v_end_ = body_.v();
+  return drives_.update_saturation(q_, v_end_.tail(body_.joints()), h_, release);
+}
+
+void DrivenRobot::set_drift() {
+  if (body_.base_dof() == 0) return;
+  const VecX a = body_.acceleration((v_start_ + v_end_) / 2, VecX::Zero(body_.dof()), Vec3::Zero());
+  VecX v = v_end_;
+  v.head<6>() -= h_ / 2 * (give_ * (M_ * a)).head<6>();
+  body_.set_v(v);
+}
+
+void DrivenRobot::end() {
+  drive_impulse += h_ * (law_.force - law_.damping.cwiseProduct(v_end_.tail(body_.joints())));
+  body_.refresh();
+  if (body_.base_dof() == 0) return;
+  Eigen::Matrix<Real, 6, 1> momentum = (M_ * (v_start_ + v_end_ - v_free_) + h_ * tau_).head<6>() + h_ * weight_;
+  momentum.tail<3>() += (origin_ - body_.X_WL(0).translation()).cross(momentum.head<3>());
+  const MatX M = body_.mass_matrix();
+  VecX v = v_end_;
+  v.head<6>() += M.topLeftCorner<6, 6>().llt().solve(momentum - (M * v).head<6>());
+  body_.set_v(v);
+}
+}  // namespace robot

@@ -1,0 +1,66 @@
+#pragma once
+#include "robot/control/drives.hpp"
+#include "robot/world/articulation.hpp"
+#include "robot/world/world.hpp"
+
+namespace robot {
+/// A robot with its drives, and how one substep of length h changes its velocity (README.md).
+class DrivenRobot {
+ public:
+  DrivenRobot(int index, std::shared_ptr<const RobotModel> model, const RobotParams& params);
+
+  Articulation& body() { return body_; }
+  const Articulation& body() const { return body_; }
+  Drives& drives() { return drives_; }
+  const Drives& drives() const { return drives_; }
+  const std::vector<std::unique_ptr<btMultiBodyConstraint>>& constraints() const { return constraints_; }
+
+  /// Joints that mimic follow exactly.
+  VecX follow(VecX q) const;
+  VecX follow_velocity(VecX v) const;
+  void set_friction(int link, Real mu);
+  /// [dof x k] motions that mimicking joints leave.
+  const MatX& motions() const { return motions_; }
+  /// d q_end / d tau over count substeps.
+  MatX response(Real h, int count) const;
+
+  /// Configuration, velocity, commands and active set as numbers, to the bit.
+  void save(std::vector<Real>& numbers) const;
+  void restore(const Real*& numbers);
+  std::size_t saved_size() const { return 13 + 7 * static_cast<std::size_t>(body_.joints()); }
+
+  /// At the start of a substep: what stays the same while contacts are sought and drives enter or leave their limits.
+  void begin(const VecX& tau, const Vec3& gravity, Real h);
+  /// Sets the velocity that drives, external forces, weight and Coriolis forces lead to, before contacts, limits and Coulomb friction.
+  void move_freely();
+  /// [6 + nj x 6 + nj] change of Bullet's velocity per impulse, the drives giving way as they do within a substep.
+  const MatX& impulse_response() const { return impulse_response_; }
+  /// After contacts and the like; true if a drive must enter or leave its limit, and the substep be made again.
+  bool update_saturation(bool release);
+  /// Sets the velocity with which the configuration moves: a free base turns as the Coriolis forces make it in mid substep.
+  void set_drift();
+  /// After the configuration has changed: gives a free base the momentum that it has got (README.md), books the drives' impulse.
+  void end();
+
+  /// [nj] N m s or N s: of the drives, since it was last set to zero.
+  VecX drive_impulse;
+
+ private:
+  void add_constraints();
+  MatX on_joints(const VecX& diagonal) const;
+  Articulation body_;
+  Drives drives_;
+  VecX viscous_;  // [nj]
+  MatX motions_;
+  std::vector<std::unique_ptr<btMultiBodyConstraint>> constraints_;
+
+  // of the substep
+  Real h_ = 0;
+  Vec3 gravity_ = Vec3::Zero();
+  VecX tau_, q_, v_start_, v_free_, v_end_;
+  Eigen::Matrix<Real, 6, 1> weight_ = Eigen::Matrix<Real, 6, 1>::Zero();
+  Vec3 origin_ = Vec3::Zero();  // of the base's frame at the start
+  DriveLaw law_;
+  MatX M_, give_, impulse_response_;  // give: velocity per impulse, [dof x dof]
+};
+}  // namespace robot
