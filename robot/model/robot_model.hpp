@@ -42,8 +42,8 @@ struct Shape {
   Kind kind = Kind::box;
   Pose X_LS = Pose::Identity();      ///< of the shape in the link's frame
   Vec3 size = Vec3::Zero();          ///< [m] box: full lengths; cylinder: radius, radius, length along z; sphere: radius in all
-  TriangleMesh mesh;                 ///< [m] in the shape's frame, of every kind; closed for boxes, cylinders and spheres
-  std::string file;                  ///< of a mesh
+  TriangleMesh mesh = {};            ///< [m] in the shape's frame, of every kind; closed for boxes, cylinders and spheres
+  std::string file = {};             ///< of a mesh
   Vec3 color = Vec3::Constant(0.7);  ///< [0, 1] red, green, blue
 };
 
@@ -55,7 +55,7 @@ struct Link {
 
 enum class JointType { revolute, continuous, prismatic };
 
-/// This joint moves as multiplier * q + offset of another.
+/// This joint moves as multiplier * q + offset of another, which mimics none.
 struct Mimic {
   int joint = 0;
   Real multiplier = 1;
