@@ -30,7 +30,7 @@ Hull compute(const std::vector<Vec3>& points) {
     const auto* first = &computer.edges[computer.faces[f]];
     const int apex = first->getSourceVertex();
     for (const auto* edge = first->getNextEdgeOfFace(); edge->getTargetVertex() != apex; edge = edge->getNextEdgeOfFace())
-      hull.triangles.push_back({apex, edge->getTargetVertex(), edge->getSourceVertex()});  // Bullet goes round clockwise
+      hull.triangles.push_back({apex, edge->getSourceVertex(), edge->getTargetVertex()});
   }
   return hull;
 }

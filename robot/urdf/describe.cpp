@@ -21,18 +21,18 @@ const char* name_of(JointType type) {
   return "prismatic";
 }
 
-const char* name_of(Shape::Kind kind) {
+std::string name_of(Shape::Kind kind, std::size_t count) {
   switch (kind) {
     case Shape::Kind::box:
-      return "box";
+      return count == 1 ? "box" : "boxes";
     case Shape::Kind::cylinder:
-      return "cylinder";
+      return count == 1 ? "cylinder" : "cylinders";
     case Shape::Kind::sphere:
-      return "sphere";
+      return count == 1 ? "sphere" : "spheres";
     case Shape::Kind::mesh:
       break;
   }
-  return "mesh";
+  return count == 1 ? "mesh" : "meshes";
 }
 
 /// The joint's own motion, of the child's frame.
@@ -47,7 +47,7 @@ Pose motion(const Joint& joint, Real q) {
 
 Real travel(const Joint& joint) { return joint.type == JointType::prismatic ? std::max(-joint.lower, joint.upper) : 0; }
 
-/// "2 boxes"; nothing if there are none of that kind.
+/// ", visual: 2 boxes, 1 mesh of 12 triangles"; empty without shapes.
 std::string shapes_text(const char* what, const std::vector<Shape>& shapes) {
   std::string text;
   for (const auto kind : {Shape::Kind::box, Shape::Kind::cylinder, Shape::Kind::sphere, Shape::Kind::mesh}) {
@@ -55,7 +55,7 @@ std::string shapes_text(const char* what, const std::vector<Shape>& shapes) {
     for (const Shape& s : shapes)
       if (s.kind == kind) ++count, triangles += s.mesh.triangles.size();
     if (count == 0) continue;
-    text += fmt::format("{} {} {}", text.empty() ? "" : ",", count, name_of(kind));
+    text += fmt::format("{} {} {}", text.empty() ? "" : ",", count, name_of(kind, count));
     if (kind == Shape::Kind::mesh) text += fmt::format(" of {} triangles", triangles);
   }
   return text.empty() ? "" : fmt::format(", {}:{}", what, text);
@@ -100,7 +100,7 @@ void add_tree(const RobotModel& robot, int link, const std::string& indent, std:
   for (std::size_t j = 0; j < robot.joints.size(); ++j)
     if (robot.joints[j].parent == link) {
       text += indent + "  " + joint_text(robot, robot.joints[j]) + "\n";
-      add_tree(robot, static_cast<int>(j) + 1, indent + "    ", text);
+      add_tree(robot, static_cast<int>(j) + 1, indent + "  ", text);
     }
 }
 }  // namespace
@@ -135,8 +135,8 @@ Real total_mass(const RobotModel& robot) {
 
 std::string describe(const RobotModel& robot) {
   const auto mimics = std::count_if(robot.joints.begin(), robot.joints.end(), [](const Joint& j) { return j.mimic.has_value(); });
-  std::string text = fmt::format("robot {}: {} links, {} joints{}, {} frames of merged links\n", robot.name, robot.links.size(),
-                                 robot.joints.size(), mimics ? fmt::format(" ({} mimic)", mimics) : "", robot.frames.size());
+  std::string text = fmt::format("robot {}: links: {}, joints: {} ({} of them mimic), frames of merged links: {}\n", robot.name,
+                                 robot.links.size(), robot.joints.size(), mimics, robot.frames.size());
   add_tree(robot, 0, "", text);
   const Reach r = reach(robot);
   text += fmt::format("mass: {:.5g} kg in all\n", total_mass(robot));

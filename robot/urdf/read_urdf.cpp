@@ -92,7 +92,7 @@ class Builder {
     }
     for (const auto& visual : link.visual_array) {
       body.visual.push_back(shape(*visual->geometry, X_LU * pose(visual->origin), link.name));
-      if (const auto& m = visual->material) body.visual.back().color = Vec3(m->color.r, m->color.g, m->color.b).cwiseMax(0).cwiseMin(1);
+      if (const auto& m = visual->material) body.visual.back().color = {m->color.r, m->color.g, m->color.b};
     }
     for (const auto& collision : link.collision_array)
       body.collision.push_back(shape(*collision->geometry, X_LU * pose(collision->origin), link.name));

@@ -21,7 +21,7 @@ using tinyxml2::XMLElement;
 struct NumberRule {
   std::string_view element, attribute;
   std::size_t count;
-  enum class Range { any, not_negative, positive, not_zero } range = Range::any;
+  enum class Range { any, not_negative, positive, not_zero, fraction } range = Range::any;
 };
 using enum NumberRule::Range;
 constexpr NumberRule kNumbers[] = {
@@ -48,7 +48,7 @@ constexpr NumberRule kNumbers[] = {
     {"cylinder", "length", 1, positive},
     {"sphere", "radius", 1, positive},
     {"mesh", "scale", 3, not_zero},
-    {"color", "rgba", 4},
+    {"color", "rgba", 4, fraction},
 };
 
 const char* range_text(NumberRule::Range range) {
@@ -59,6 +59,8 @@ const char* range_text(NumberRule::Range range) {
       return "> 0";
     case not_zero:
       return "a finite number other than 0";
+    case fraction:
+      return "0 to 1";
     case any:
       break;
   }
@@ -66,8 +68,19 @@ const char* range_text(NumberRule::Range range) {
 }
 
 bool contains(NumberRule::Range range, Real value) {
-  if (!std::isfinite(value)) return false;
-  return range == positive ? value > 0 : range == not_negative ? value >= 0 : range == not_zero ? value != 0 : true;
+  switch (range) {
+    case not_negative:
+      return std::isfinite(value) && value >= 0;
+    case positive:
+      return std::isfinite(value) && value > 0;
+    case not_zero:
+      return std::isfinite(value) && value != 0;
+    case fraction:
+      return value >= 0 && value <= 1;
+    case any:
+      break;
+  }
+  return std::isfinite(value);
 }
 
 /// Nothing if a word is no number.
