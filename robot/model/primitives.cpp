@@ -5,27 +5,28 @@
 
 namespace robot {
 namespace {
-constexpr int kSegments = 32;  ///< around a round shape; half as many from pole to pole
+constexpr int kCylinderSegments = 64;  // flats lie inside by 0.12 % of the radius
+constexpr int kSphereSegments = 32;    // half as many from pole to pole
 
-/// A closed surface of revolution about z: rings of kSegments vertices from the bottom to the top, closed by a fan to a pole at each end.
+/// A closed surface of revolution about z: rings of vertices from the bottom to the top, closed by a fan to a pole at each end.
 /// @param profile  [m] radius and height of each ring, ascending
-TriangleMesh revolved(const std::vector<std::pair<Real, Real>>& profile, Real bottom, Real top) {
+TriangleMesh revolved(const std::vector<std::pair<Real, Real>>& profile, Real bottom, Real top, int segments) {
   TriangleMesh mesh;
   for (const auto& [radius, z] : profile)
-    for (int s = 0; s < kSegments; ++s) {
-      const Real angle = 2 * std::numbers::pi * s / kSegments;
+    for (int s = 0; s < segments; ++s) {
+      const Real angle = 2 * std::numbers::pi * s / segments;
       mesh.vertices.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
     }
-  const int rings = static_cast<int>(profile.size()), south = rings * kSegments, north = south + 1;
+  const int rings = static_cast<int>(profile.size()), south = rings * segments, north = south + 1;
   mesh.vertices.emplace_back(0, 0, bottom);
   mesh.vertices.emplace_back(0, 0, top);
-  for (int s = 0; s < kSegments; ++s) {
-    const int next = (s + 1) % kSegments, last = (rings - 1) * kSegments;
+  for (int s = 0; s < segments; ++s) {
+    const int next = (s + 1) % segments, last = (rings - 1) * segments;
     mesh.triangles.push_back({south, next, s});
     for (int r = 0; r + 1 < rings; ++r) {
-      const int a = r * kSegments + s, b = r * kSegments + next;
-      mesh.triangles.push_back({a, b, b + kSegments});
-      mesh.triangles.push_back({a, b + kSegments, a + kSegments});
+      const int a = r * segments + s, b = r * segments + next;
+      mesh.triangles.push_back({a, b, b + segments});
+      mesh.triangles.push_back({a, b + segments, a + segments});
     }
     mesh.triangles.push_back({north, last + s, last + next});
   }
@@ -46,15 +47,18 @@ Shape cylinder_shape(Real radius, Real length, const Pose& X_LS) {
   return {.kind = Shape::Kind::cylinder,
           .X_LS = X_LS,
           .size = {radius, radius, length},
-          .mesh = revolved({{radius, -length / 2}, {radius, length / 2}}, -length / 2, length / 2)};
+          .mesh = revolved({{radius, -length / 2}, {radius, length / 2}}, -length / 2, length / 2, kCylinderSegments)};
 }
 
 Shape sphere_shape(Real radius, const Pose& X_LS) {
   std::vector<std::pair<Real, Real>> profile;
-  for (int r = 1; r < kSegments / 2; ++r) {
-    const Real angle = std::numbers::pi * r / (kSegments / 2);
+  for (int r = 1; r < kSphereSegments / 2; ++r) {
+    const Real angle = std::numbers::pi * r / (kSphereSegments / 2);
     profile.emplace_back(radius * std::sin(angle), -radius * std::cos(angle));
   }
-  return {.kind = Shape::Kind::sphere, .X_LS = X_LS, .size = Vec3::Constant(radius), .mesh = revolved(profile, -radius, radius)};
+  return {.kind = Shape::Kind::sphere,
+          .X_LS = X_LS,
+          .size = Vec3::Constant(radius),
+          .mesh = revolved(profile, -radius, radius, kSphereSegments)};
 }
 }  // namespace robot

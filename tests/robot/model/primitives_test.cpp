@@ -19,8 +19,8 @@ bool is_closed(const TriangleMesh& mesh) {
   return true;
 }
 constexpr Real kPi = std::numbers::pi;
-/// Area of a polygon of 32 corners on a circle, over that of the circle.
-const Real kPolygon = std::sin(2 * kPi / 32) / (2 * kPi / 32);
+/// Area of a polygon of 64 corners on a circle, over that of the circle.
+const Real kPolygon = std::sin(2 * kPi / 64) / (2 * kPi / 64);
 }  // namespace
 
 TEST(Primitives, AreClosedAndFaceOutward) {
