@@ -6,7 +6,7 @@
 namespace robot {
 namespace {
 constexpr int kCylinderSegments = 64;  // flats lie inside by 0.12 % of the radius
-constexpr int kSphereSegments = 32;    // half as many from pole to pole
+constexpr int kSphereSegments = 32, kSphereBands = kSphereSegments / 2;
 
 /// A closed surface of revolution about z: rings of vertices from the bottom to the top, closed by a fan to a pole at each end.
 /// @param profile  [m] radius and height of each ring, ascending
@@ -52,8 +52,8 @@ Shape cylinder_shape(Real radius, Real length, const Pose& X_LS) {
 
 Shape sphere_shape(Real radius, const Pose& X_LS) {
   std::vector<std::pair<Real, Real>> profile;
-  for (int r = 1; r < kSphereSegments / 2; ++r) {
-    const Real angle = std::numbers::pi * r / (kSphereSegments / 2);
+  for (int r = 1; r < kSphereBands; ++r) {
+    const Real angle = std::numbers::pi * r / kSphereBands;
     profile.emplace_back(radius * std::sin(angle), -radius * std::cos(angle));
   }
   return {.kind = Shape::Kind::sphere,

@@ -123,11 +123,12 @@ TEST(ConvexHull, ACorruptedCacheFileIsWrittenAnew) {
   const TriangleMesh expected = convex_hull(points, folder.path());
   const fs::path file = only_file(folder.path());
   const std::string good = content(file);
+  const std::size_t end = good.rfind("end"), last = good.rfind('\n', end - 2) + 1;
   std::string open = good, far = good;
-  open.replace(open.find('\n'), 0, "0").replace(0, 4, "8 11");  // a triangle less
-  far.replace(far.find('\n') + 1, 1, "999");                    // a point that is not there
-  for (const std::string& bad : {std::string(), std::string("\0\1\2", 3), good.substr(0, good.size() / 2), good.substr(0, good.size() - 4),
-                                 "-1" + good, "99999999999 " + good, open, far}) {
+  open.erase(last, end - last).replace(0, 4, "8 11");  // a triangle less
+  far.replace(far.find('\n') + 1, 1, "999");           // a point that is not there
+  for (const std::string& bad : {std::string(), std::string("\0\1\2", 3), good.substr(0, good.size() / 2), good.substr(0, end),
+                                 good.substr(0, end) + "x", "-1" + good, "99999999999 " + good, open, far}) {
     std::ofstream(file, std::ios::binary) << bad;
     expect_same(convex_hull(points, folder.path()), expected);
     EXPECT_EQ(content(file), good);

@@ -215,6 +215,13 @@ TEST(MeshUri, IsFoundWhereItCanBeMeant) {
   EXPECT_EQ(find(mesh.string()), mesh);
 }
 
+TEST(MeshUri, AFolderOfThePackagesNameComesBeforeOthersThatHaveTheFile) {
+  const Folder folder;
+  const fs::path named = folder.write("ws/pkg/meshes/a.stl", "x");
+  folder.write("ws/pkg/sub/meshes/a.stl", "x");
+  EXPECT_EQ(find_mesh("package://pkg/meshes/a.stl", folder.path() / "ws" / "pkg" / "sub" / "r.urdf", {}, "l"), named);
+}
+
 TEST(MeshUri, ThePackageRootComesFirst) {
   const Folder folder;
   const fs::path urdf = folder.path() / "p" / "r.urdf";
