@@ -123,6 +123,7 @@ class Reader {
     each_child(*robot_, "joint", [&](XMLElement& joint) { check_type(joint); });
     check_tree();
     drop_empty_inertials();
+    complete_inertias();
     for (const char* tag : {"link", "joint", "material"}) each_child(*robot_, tag, [&](XMLElement& e) { check_numbers(e); });
     each_child(*robot_, "joint", [&](XMLElement& joint) { check_motion(joint); });
     drop_bad_materials();
@@ -228,6 +229,18 @@ class Reader {
           for (const auto* a = e->FirstAttribute(); a; a = a->Next())
             if (a->DoubleValue() != 0) return;
       link.DeleteChild(inertial);
+    });
+  }
+
+  /// Off-diagonal terms that are left out are 0.
+  void complete_inertias() {
+    each_child(*robot_, "link", [&](XMLElement& link) {
+      each_child(link, "inertial", [&](XMLElement& inertial) {
+        each_child(inertial, "inertia", [&](XMLElement& inertia) {
+          for (const char* term : {"ixy", "ixz", "iyz"})
+            if (!inertia.Attribute(term)) inertia.SetAttribute(term, "0");
+        });
+      });
     });
   }
 

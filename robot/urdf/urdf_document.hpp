@@ -14,8 +14,8 @@ struct UrdfDocument {
 
 /// Refused: what is no XML or no robot, xacro that is not expanded, numbers that are none or out of range, duplicate names, joints that
 /// name unknown links or cannot move, more than one root, loops, revolute and prismatic joints without limits. Tidied: white space and
-/// signs of numbers; what fixed joints say about motion, and the inertia of links that hang on them if all of it is 0; materials that are
-/// not defined, or defined again.
+/// signs of numbers; what fixed joints say about motion, and the inertia of links that hang on them if all of it is 0; off-diagonal terms
+/// of inertias that are left out; materials that are not defined, or defined again.
 /// @throws InputError naming file, line, element, value and what is allowed
 UrdfDocument read_document(const std::filesystem::path& file);
 }  // namespace robot

@@ -133,6 +133,11 @@ TEST(ReadUrdf, TheInertiaIsTurnedByItsOrigin) {
   EXPECT_EQ(model.links[1].inertial.mass, 2);
 }
 
+TEST(ReadUrdf, OffDiagonalTermsThatAreLeftOutAreZero) {
+  const RobotModel model = read_text(one_joint(kLimit, R"(<inertial><mass value="1"/><inertia ixx="1" iyy="2" izz="2.5"/></inertial>)"));
+  EXPECT_EQ(model.links[1].inertial.inertia, Mat3(Vec3(1, 2, 2.5).asDiagonal()));
+}
+
 TEST(ReadUrdf, FixedLinksBecomePartOfTheirParentWithTheMassOfBoth) {
   // Two cubes of 1 kg and edge 0.1 m, 0.4 m apart along x: about the middle between them, I = 2 (m a^2 / 6) and 2 m 0.2^2 more across x.
   const RobotModel model =
