@@ -8,6 +8,7 @@
 
 #include "apps/tapesim/commands.hpp"
 #include "cosim/scene/node.hpp"
+#include "robot/model/robot_model.hpp"
 #include "tape/core/error.hpp"
 
 namespace tape::tapesim {
@@ -36,6 +37,9 @@ int act(const Action& chosen) {
     if (std::fflush(stdout) != 0) throw InputError(std::string("cannot write to standard output: ") + std::strerror(errno));
     return code;
   } catch (const InputError& e) {
+    say("", e);
+    return kBadInput;
+  } catch (const robot::InputError& e) {
     say("", e);
     return kBadInput;
   } catch (const NumericalError& e) {

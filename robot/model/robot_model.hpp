@@ -55,7 +55,7 @@ struct Link {
 
 enum class JointType { revolute, continuous, prismatic };
 
-/// This joint moves as multiplier * q + offset of another.
+/// This joint moves as multiplier * q + offset of another, which mimics none.
 struct Mimic {
   int joint = 0;
   Real multiplier = 1;

@@ -97,6 +97,14 @@ TEST_F(Info, ListsSettingsWithDefaultUnitRangeAndMeaningAsRunsHelpDoes) {
   EXPECT_THAT(line_of(settings, "solver.stop"), HasSubstr("velocity, work"));
   EXPECT_THAT(tapesim({"run", "--help"}).out, HasSubstr(line_of(settings, "time.dt")));
 }
+TEST_F(Info, TellsWhatWasUnderstoodOfARobotAndRefusesOneThatIsNone) {
+  const Outcome arm = tapesim({"info", "--robot", TAPE_SOURCE_DIR "/data/robots/arm7.urdf"});
+  ASSERT_EQ(arm.exit_code, 0) << arm.err;
+  EXPECT_THAT(arm.out, testing::AllOf(HasSubstr("robot arm7: links: 8, joints: 7"), HasSubstr("mass: 18.6 kg in all")));
+  const Outcome none = tapesim({"info", "--robot", "none.urdf"});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_EQ(none.err, "tapesim: none.urdf: there is no such file\n");
+}
 TEST_F(StudyCommand, AgainstAClosedFormPrintsATableAndLeavesCsvAndPlots) {
   const std::string study = folder.file("study.yaml", std::string(kStudy) + "against: {closed_form: heavy_elastica}\n");
   const Outcome outcome = tapesim({"study", study, "--out", (folder / "out").string()});

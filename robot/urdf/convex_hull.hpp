@@ -1,0 +1,20 @@
+#pragma once
+#include <filesystem>
+
+#include "robot/model/robot_model.hpp"
+
+namespace robot {
+/// Convex hull as a closed mesh whose vertices are points of the input. Bullet rounds the points to about 1e-4 of their extent while it
+/// decides which of them lie on the hull, so points closer to its surface than that may stay outside.
+/// @param points  [n] m
+/// @throws InputError if they lie in one plane, or are not finite
+TriangleMesh convex_hull(const std::vector<Vec3>& points);
+
+/// The same, kept in a file of that folder under a hash of the points. A file that does not hold a closed mesh over the points is written
+/// anew; a folder that cannot be written in is done without, as is an empty name.
+/// @param cache  made if it does not exist; hull_cache() unless the caller has another
+TriangleMesh convex_hull(const std::vector<Vec3>& points, const std::filesystem::path& cache);
+
+/// $TAPE_CACHE; empty if that is not set.
+std::filesystem::path hull_cache();
+}  // namespace robot
