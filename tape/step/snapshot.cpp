@@ -30,6 +30,8 @@ void visit_state(State& s, const Visit& visit) {
   for (Vec3& p : s.grip_base) visit(p);
   visit(s.step);
   for (int& c : s.grip_closed) visit(c);
+  s.outside.resize(visit.count(s.outside.size()));
+  for (Real& r : s.outside) visit(r);
   const auto visit_memory = [&](EffectMemory& memory) {
     for_each_memory(memory, [&](auto& pairs) {
       pairs.resize(visit.count(pairs.size()));
@@ -78,9 +80,9 @@ struct Read {
     if (value < 0 || value > std::numeric_limits<int>::max()) throw std::out_of_range("integer");
     v = static_cast<int>(value);
   }
-  std::size_t count(std::size_t) const {  // of things that hold an integer each
+  std::size_t count(std::size_t) const {  // of things that hold a number each
     const std::int64_t n = flat.integers.at(integer++);
-    if (n < 0 || static_cast<std::size_t>(n) > flat.integers.size()) throw std::out_of_range("count");
+    if (n < 0 || static_cast<std::size_t>(n) > flat.integers.size() + flat.reals.size()) throw std::out_of_range("count");
     return static_cast<std::size_t>(n);
   }
   template <class M>

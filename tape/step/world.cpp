@@ -109,6 +109,7 @@ std::string State::hash() const {
   }
   hash.add(grip_base.data(), grip_base.size() * sizeof(Vec3));
   hash.add(grip_closed.data(), grip_closed.size() * sizeof(int));
+  hash.add(outside.data(), outside.size() * sizeof(Real));
   const auto add_memory = [&](EffectMemory copy) {
     for_each_memory(copy, [&](auto& pairs) {
       for (auto& pair : pairs) pair.visit([&](auto& value) { hash.add(&value, sizeof value); });

@@ -1,0 +1,234 @@
+#include "cosim/exchange/exchange.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "tape/core/error.hpp"
+#include "tape/core/stopwatch.hpp"
+
+namespace cosim {
+namespace {
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using robot::RobotState;
+
+constexpr double kHeavy = 1e6;  // times the inertia: a link that feels nothing
+/// [N/m] of the hold that closes the gap between the two worlds, as stiff as that of driven bodies.
+constexpr double kClosing = 1e9;
+
+/// Change of a pose over a step: translation of the origin and rotation vector, in the world.
+VectorXd twist(const tape::Pose& from, const robot::Pose& to) {
+  const Eigen::AngleAxisd turn(robot::Mat3(to.linear() * from.rotation.transpose()));
+  VectorXd out(6);
+  out << to.translation() - from.position, turn.angle() * turn.axis();
+  return out;
+}
+
+/// How far a robot came, by its velocities' coordinates.
+VectorXd change(const RobotState& from, const RobotState& to, bool free_base) {
+  const VectorXd joints = to.q - from.q;
+  if (!free_base) return joints;
+  VectorXd out(6 + joints.size());
+  out << twist({from.X_WB.linear(), from.X_WB.translation()}, to.X_WB), joints;
+  return out;
+}
+
+VectorXd wrench_of(const tape::LinkReport& link) {
+  VectorXd sum = VectorXd::Zero(6);
+  for (const tape::Wrench* w : {&link.normal, &link.friction, &link.adhesion, &link.hold}) {
+    sum.head<3>() += w->force;
+    sum.tail<3>() += w->torque;
+  }
+  return sum;
+}
+}  // namespace
+
+int coordinates(const robot::World& world, int robot) { return static_cast<int>(world.motions(robot).cols()) + 1; }
+
+tape::Pose to_tape(const robot::Pose& pose) { return {pose.linear(), pose.translation()}; }
+
+CoupledStepper::CoupledStepper(const RobotScene& robots, const tape::World& world, std::unique_ptr<tape::Stepper> tape, Commands commands)
+    : robots_(robots), world_(world), tape_(std::move(tape)), commands_(std::move(commands)), bullet_(make_world(robots)) {
+  const tape::Scene& scene = world.setup.scene;
+  for (const tape::Articulation& articulation : scene.articulations) {
+    const auto named = [&](const RobotPart& part) { return part.name == articulation.name; };
+    const auto found = std::ranges::find_if(robots_.robots, named);
+    TAPE_CHECK(found != robots_.robots.end());
+    Part part{static_cast<int>(found - robots_.robots.begin()), {}, {}};
+    for (int link = 0; link < static_cast<int>(found->model->links.size()); ++link) {
+      const auto body = std::ranges::find(scene.bodies, body_name(*found, link), &tape::Body::name);
+      if (body == scene.bodies.end() || body->motion != tape::Motion::linked) continue;
+      part.links.push_back(link);
+      part.bodies.push_back(static_cast<int>(body - scene.bodies.begin()));
+    }
+    parts_.push_back(std::move(part));
+  }
+  start_ = bullet_.save();
+}
+
+/// What Bullet, which has just made the step alone, says of a robot.
+tape::ArticulationStep CoupledStepper::predicted(const Part& part, const tape::State& state, const RobotState& before, double dt) const {
+  const MatrixXd T = bullet_.motions(part.robot);
+  const Eigen::Index n = T.cols(), dof = T.rows();
+  const Eigen::CompleteOrthogonalDecomposition<MatrixXd> inverse(T);
+  tape::ArticulationStep step{VectorXd(n + 1), MatrixXd::Zero(n + 1, n + 1), {}};
+  step.predicted.head(n) = inverse.solve(change(before, bullet_.state(part.robot), dof > before.q.size()));
+  step.predicted[n] = 1;
+  const MatrixXd S = inverse.solve(inverse.solve(bullet_.response(part.robot, dt)).transpose());
+  const double heavy = robots_.exchange.schedule == Schedule::inertial ? 1 : kHeavy;
+  const MatrixXd inertia = heavy * dt * dt * S.llt().solve(MatrixXd::Identity(n, n));
+  step.inertia.topLeftCorner(n, n) = (inertia + inertia.transpose()) / 2;
+  double gap2 = 0;
+  for (std::size_t l = 0; l < part.links.size(); ++l) {
+    const tape::Pose& now = state.bodies[static_cast<std::size_t>(part.bodies[l])].pose;
+    MatrixXd J(6, n + 1);
+    J.leftCols(n) = bullet_.jacobian(part.robot, part.links[l]) * T;
+    J.col(n) = twist(now, bullet_.link_pose(part.robot, part.links[l])) - J.leftCols(n) * step.predicted.head(n);
+    gap2 = std::max(gap2, J.col(n).squaredNorm());
+    step.jacobian.push_back(std::move(J));
+  }
+  step.inertia(n, n) = gap2 > 0 ? dt * dt * kClosing * gap2 : 1;
+  return step;
+}
+
+/// External forces [robots][dof] from what the tape side exerts on the links.
+std::vector<robot::VecX> CoupledStepper::forces(const tape::StepReport& report) const {
+  std::vector<robot::VecX> tau(static_cast<std::size_t>(bullet_.robots()));
+  for (std::size_t a = 0; a < parts_.size(); ++a) {
+    VectorXd& sum = tau[static_cast<std::size_t>(parts_[a].robot)];
+    sum = VectorXd::Zero(bullet_.dof(parts_[a].robot));
+    for (std::size_t l = 0; l < parts_[a].links.size(); ++l)
+      sum += bullet_.jacobian(parts_[a].robot, parts_[a].links[l]).transpose() * wrench_of(report.articulations[a].links[l]);
+  }
+  return tau;
+}
+
+tape::StepReport CoupledStepper::step(tape::State& state, const tape::Exchange&) {
+  const double dt = world_.setup.scene.time.dt;
+  report_ = {};
+  restore(state);
+  if (commands_) {
+    const std::vector<std::vector<robot::JointCommand>> commands = commands_(bullet_, state.time);
+    for (std::size_t r = 0; r < commands.size(); ++r) bullet_.command(static_cast<int>(r), commands[r]);
+  }
+  const robot::Snapshot start = bullet_.save();
+  tape::State next = state;
+  tape::StepReport report = robots_.exchange.schedule == Schedule::iterated ? step_in_turns(next, dt, start) : step_once(next, dt, start);
+  report.stages.push_back({"bullet", report_.bullet_ms});
+  if (!report.ok) return report;
+  next.outside = bullet_.save().numbers;
+  state = std::move(next);
+  note_mismatch(state);
+  return report;
+}
+
+void CoupledStepper::restore(const tape::State& state) {
+  if (state.outside.empty()) return bullet_.restore(start_);
+  if (state.outside.size() != start_.numbers.size())
+    throw tape::InputError("the state holds other robots than the scene: " + std::to_string(state.outside.size()) + " numbers, not " +
+                           std::to_string(start_.numbers.size()));
+  bullet_.restore({state.outside});
+}
+
+void CoupledStepper::advance_bullet(const robot::Snapshot& start, double dt, const std::vector<robot::VecX>& tau) {
+  const tape::Stopwatch watch(report_.bullet_ms);
+  bullet_.restore(start);
+  bullet_.step(dt, tau);
+}
+
+std::vector<RobotState> CoupledStepper::robot_states() const {
+  std::vector<RobotState> out;
+  for (int r = 0; r < bullet_.robots(); ++r) out.push_back(bullet_.state(r));
+  return out;
+}
+
+tape::StepReport CoupledStepper::step_once(tape::State& state, double dt, const robot::Snapshot& start) {
+  const std::vector<RobotState> before = robot_states();
+  advance_bullet(start, dt, {});
+  tape::Exchange exchange;
+  for (const Part& part : parts_)
+    exchange.articulations.push_back(predicted(part, state, before[static_cast<std::size_t>(part.robot)], dt));
+  std::vector<robot::Vec3> alone = momenta();
+  tape::StepReport report = tape_->step(state, exchange);
+  if (!report.ok || robots_.exchange.schedule == Schedule::kinematic) return report;
+  advance_bullet(start, dt, forces(report));
+  book_momentum(report, alone, dt);
+  return report;
+}
+
+/// Gauss-Seidel: the tape against links that go their way, then Bullet under what that exerts, with Aitken's relaxation of the forces.
+tape::StepReport CoupledStepper::step_in_turns(tape::State& state, double dt, const robot::Snapshot& start) {
+  const std::vector<RobotState> before = robot_states();
+  const tape::State first = state;
+  std::vector<robot::VecX> tau, last_residual;
+  double relaxation = 1;
+  tape::StepReport report;
+  for (int turn = 1; turn <= robots_.exchange.iterations; ++turn) {
+    report_.iterations = turn;
+    advance_bullet(start, dt, tau);
+    state = first;
+    tape::Exchange exchange;
+    for (const Part& part : parts_)
+      exchange.articulations.push_back(predicted(part, state, before[static_cast<std::size_t>(part.robot)], dt));
+    report = tape_->step(state, exchange);
+    if (!report.ok) return report;
+    std::vector<robot::VecX> residual = forces(report);
+    double size = 0, left = 0, along = 0, change2 = 0;
+    for (std::size_t r = 0; r < residual.size(); ++r) {
+      if (residual[r].size() == 0) continue;
+      size += residual[r].squaredNorm();
+      if (!tau.empty()) residual[r] -= tau[r];
+      left += residual[r].squaredNorm();
+      if (last_residual.empty()) continue;
+      const VectorXd difference = residual[r] - last_residual[r];
+      along += last_residual[r].dot(difference), change2 += difference.squaredNorm();
+    }
+    if (left <= robots_.exchange.tolerance * robots_.exchange.tolerance * size) return report;
+    if (change2 > 0) relaxation *= -along / change2;
+    if (tau.empty()) {
+      tau = residual;
+    } else {
+      for (std::size_t r = 0; r < tau.size(); ++r) tau[r] += relaxation * residual[r];
+    }
+    last_residual = std::move(residual);
+  }
+  report.ok = false;
+  report.failure = "the worlds did not agree in " + std::to_string(robots_.exchange.iterations) + " turns (exchange.iterations)";
+  return report;
+}
+
+/// Linear momentum of each robot with a free base.
+std::vector<robot::Vec3> CoupledStepper::momenta() const {
+  std::vector<robot::Vec3> out;
+  for (const Part& part : parts_) {
+    const bool free = !robots_.robots[static_cast<std::size_t>(part.robot)].params.fixed_base;
+    out.push_back(free ? robot::Vec3(bullet_.generalized_momentum(part.robot).head<3>()) : robot::Vec3(robot::Vec3::Zero()));
+  }
+  return out;
+}
+
+void CoupledStepper::book_momentum(const tape::StepReport& report, const std::vector<robot::Vec3>& alone, double dt) {
+  const std::vector<robot::Vec3> now = momenta();
+  double given = 0, lost = 0;
+  for (std::size_t a = 0; a < parts_.size(); ++a) {
+    robot::Vec3 force = robot::Vec3::Zero();
+    for (const tape::LinkReport& link : report.articulations[a].links) {
+      force += wrench_of(link).head<3>();
+      report_.momentum_given += dt * wrench_of(link).head<3>().norm();
+    }
+    if (robots_.robots[static_cast<std::size_t>(parts_[a].robot)].params.fixed_base) continue;
+    given += dt * force.norm();
+    lost += (now[a] - alone[a] - dt * force).norm();
+  }
+  report_.residual = given > 0 ? lost / given : 0;
+}
+
+void CoupledStepper::note_mismatch(const tape::State& state) {
+  for (const Part& part : parts_)
+    for (std::size_t l = 0; l < part.links.size(); ++l)
+      report_.mismatch = std::max(report_.mismatch, (state.bodies[static_cast<std::size_t>(part.bodies[l])].pose.position -
+                                                     bullet_.link_pose(part.robot, part.links[l]).translation())
+                                                        .norm());
+}
+}  // namespace cosim

@@ -1,0 +1,63 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "cosim/exchange/robots.hpp"
+#include "tape/step/stepper.hpp"
+
+namespace cosim {
+/// Of one step.
+struct ExchangeReport {
+  int iterations = 1;         ///< tape solves
+  double bullet_ms = 0;       ///< in Bullet, both passes
+  double momentum_given = 0;  ///< [N s] sum over links of the magnitude of what the tape side gave them
+  double residual = 0;        ///< [1] what free robots received of it and was not given, of what was given
+  double mismatch = 0;        ///< [m] farthest that a link's frame stands on the tape side from where Bullet has it
+};
+
+/// Unknowns of a robot in the exchange: independent joint motions, six more for a free base, and one that goes from 0 to 1 over a step
+/// and closes what the first leave open between the two worlds.
+int coordinates(const robot::World& world, int robot);
+
+tape::Pose to_tape(const robot::Pose& pose);
+
+/// A stepper of the tape side whose articulations Bullet simulates; README.md has the steps. What Bullet's world needs to go on is in
+/// State::outside.
+class CoupledStepper final : public tape::Stepper {
+ public:
+  /// @param commands  [robots] given to the drives before a step that starts at a time [s]; may be empty
+  using Commands = std::function<std::vector<std::vector<robot::JointCommand>>(const robot::World&, double)>;
+  CoupledStepper(const RobotScene& robots, const tape::World& world, std::unique_ptr<tape::Stepper> tape, Commands commands = {});
+  tape::StepReport step(tape::State& state, const tape::Exchange& more = {}) override;
+  std::vector<double> contact_force() const override { return tape_->contact_force(); }
+  const robot::World& bullet() const { return bullet_; }
+  const ExchangeReport& exchange() const { return report_; }
+
+ private:
+  /// A robot on the tape side.
+  struct Part {
+    int robot;
+    std::vector<int> links, bodies;
+  };
+  tape::ArticulationStep predicted(const Part& part, const tape::State& state, const robot::RobotState& before, double dt) const;
+  std::vector<robot::VecX> forces(const tape::StepReport& report) const;
+  std::vector<robot::RobotState> robot_states() const;
+  std::vector<robot::Vec3> momenta() const;
+  void restore(const tape::State& state);
+  void advance_bullet(const robot::Snapshot& start, double dt, const std::vector<robot::VecX>& tau);
+  tape::StepReport step_once(tape::State& state, double dt, const robot::Snapshot& start);
+  tape::StepReport step_in_turns(tape::State& state, double dt, const robot::Snapshot& start);
+  void book_momentum(const tape::StepReport& report, const std::vector<robot::Vec3>& alone, double dt);
+  void note_mismatch(const tape::State& state);
+
+  RobotScene robots_;
+  const tape::World& world_;
+  std::unique_ptr<tape::Stepper> tape_;
+  Commands commands_;
+  robot::World bullet_;
+  robot::Snapshot start_;
+  std::vector<Part> parts_;
+  ExchangeReport report_;
+};
+}  // namespace cosim

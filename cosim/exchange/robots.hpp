@@ -1,0 +1,55 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "robot/world/world.hpp"
+#include "tape/core/settings.hpp"
+#include "tape/model/scene.hpp"
+
+namespace cosim {
+/// How the two worlds go through a step together (README.md).
+enum class Schedule { inertial, kinematic, iterated };
+constexpr auto enum_names(Schedule) { return std::array<std::string_view, 3>{"inertial", "kinematic", "iterated"}; }
+
+struct ExchangeParams {
+  Schedule schedule = Schedule::inertial;
+  int iterations = 20;
+  double tolerance = 1e-3;
+  template <class F>
+  void fields(F&& f) {
+    using tape::Range;
+    f("schedule", schedule, "", Range::any(),
+      "inertial: tape and links are solved together; kinematic: links push and feel nothing; iterated: in turns");
+    f("iterations", iterations, "1", Range::closed(1, 1000), "most turns of the iterated schedule");
+    f("tolerance", tolerance, "1", Range::above(0, 1), "change of the forces between two turns at which the iterated schedule ends");
+  }
+};
+
+/// A robot or a prop of a scene.
+struct RobotPart {
+  std::string name;
+  std::shared_ptr<const robot::RobotModel> model;
+  robot::RobotParams params;
+  robot::VecX start;                           ///< [nj] joint positions
+  std::vector<robot::JointCommand> commands;   ///< [nj] at the start
+  robot::Vec3 velocity = robot::Vec3::Zero();  ///< [m/s] of a free base at the start
+  int material = 0;                            ///< of all its links, index into tape::Scene::materials
+  double xi = 0;                               ///< [m] half-thickness of their surfaces
+};
+
+struct RobotScene {
+  ExchangeParams exchange;
+  robot::WorldParams world;
+  std::vector<RobotPart> robots;
+};
+
+/// "robot:link", the body that a link is on the tape side.
+std::string body_name(const RobotPart& robot, int link);
+
+/// Appends the links to a scene as bodies, and for each robot that moves an articulation of the same name.
+void add_links(const RobotScene& robots, tape::Scene& scene);
+
+/// Bullet's world of these robots, at its start.
+robot::World make_world(const RobotScene& robots);
+}  // namespace cosim

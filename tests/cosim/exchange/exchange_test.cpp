@@ -1,0 +1,132 @@
+#include "cosim/exchange/exchange.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tape/core/execution.hpp"
+#include "tape/model/primitives.hpp"
+#include "tests/cosim/exchange/robots.hpp"
+using namespace cosim::test;
+using cosim::RobotScene;
+using cosim::Schedule;
+using robot::Vec3;
+using tape::Real;
+
+namespace {
+/// Two cubes of 4 g on a hinge, floating above the middle of a free strip in space, on their way down.
+RobotScene two_links(const Vec3& velocity, std::vector<robot::DriveGains> drives = {}) {
+  RobotModel model{.name = "pair"};
+  model.links = {box_link("first", 0.004, Vec3::Constant(0.01)), box_link("second", 0.004, Vec3::Constant(0.01), Vec3(0.012, 0, 0))};
+  model.joints = {joint("hinge", robot::JointType::continuous, Vec3::UnitY(), Vec3(0.006, 0, 0))};
+  RobotScene scene;
+  scene.world.gravity.setZero();
+  scene.robots = {part("pair", model, Vec3(-0.008, 0.002, 0.0055), false)};
+  scene.robots[0].params.drives = std::move(drives);
+  scene.robots[0].velocity = velocity;
+  return scene;
+}
+tape::Setup free_strip(Real dt, Real tolerance) {
+  tape::Setup s = tape::test::strip_setup(tape::test::flat_strip(0.06, 3, Vec3(-0.03, 0, 0)));
+  s.scene.gravity.setZero();
+  s.scene.time.dt = dt;
+  s.newton.velocity_tol = tolerance;
+  return s;
+}
+}  // namespace
+
+TEST(Exchange, AFloatingRobotAndAStripKeepTheirMomentum) {
+  Coupled both(free_strip(0.005, 1e-9), two_links(Vec3(0.05, 0, -0.3)));
+  const Vec3 before = 0.008 * Vec3(0.05, 0, -0.3);
+  Real given = 0;
+  for (int k = 0; k < 12; ++k) {
+    ASSERT_TRUE(both.step()) << both.report.failure;
+    const Vec3 now = both.bullet().generalized_momentum(0).head<3>();
+    ASSERT_LT((both.report.momentum + now - before).norm(), 1e-9 * before.norm()) << k;
+    EXPECT_LT(both.stepper->exchange().residual, 1e-9) << k;
+    given += both.stepper->exchange().momentum_given;
+  }
+  EXPECT_GT(given, 0.02 * before.norm());
+  EXPECT_GT(both.report.momentum.norm(), 0.02 * before.norm());
+}
+TEST(Exchange, BulletAloneGoesItsWayWhereNoTapeIs) {
+  RobotScene far = two_links(Vec3(0.05, 0, 0.3), {{.kp = 0.1, .kd = 1e-4}});
+  far.robots[0].commands[0] = {Kind::position, 0.4, 0, 0};
+  Coupled both(free_strip(0.01, 1e-3), far);
+  robot::World alone = make_world(far);
+  for (int k = 0; k < 10; ++k) {
+    ASSERT_TRUE(both.step()) << both.report.failure;
+    alone.step(0.01);
+    ASSERT_EQ(alone.save().numbers, both.bullet().save().numbers) << k;
+    EXPECT_LT(both.stepper->exchange().mismatch, 1e-9) << k;
+  }
+  EXPECT_GT(alone.state(0).q[0], 0.05);
+}
+TEST(Exchange, RunsRepeatToTheBitAndGoOnFromAState) {
+  const RobotScene scene = two_links(Vec3(0.05, 0, -0.3));
+  Coupled first(free_strip(0.005, 1e-4), scene);
+  tape::State half;
+  for (int k = 0; k < 8; ++k) {
+    ASSERT_TRUE(first.step());
+    if (k == 3) half = first.state;
+  }
+  for (int threads : {1, 2, 8}) {
+    tape::set_threads(threads);
+    Coupled again(free_strip(0.005, 1e-4), scene), resumed(free_strip(0.005, 1e-4), scene);
+    for (int k = 0; k < 8; ++k) ASSERT_TRUE(again.step());
+    resumed.state = half;
+    for (int k = 4; k < 8; ++k) ASSERT_TRUE(resumed.step());
+    EXPECT_EQ(again.state.hash(), first.state.hash()) << threads;
+    EXPECT_EQ(resumed.state.hash(), first.state.hash()) << threads;
+  }
+  tape::set_threads(0);
+  first.state.outside.pop_back();
+  EXPECT_THROW(first.step(), tape::InputError);
+}
+/// A finger of 7.5e-6 kg m^2 about its hinge, driven by 50 N m/rad and 0.5 N m s/rad over ten substeps, meets a strip that two grips hold.
+TEST(Exchange, ADrivenFingerGivesWayAsItsDriveAloneWould) {
+  RobotModel model{.name = "finger"};
+  model.links = {{.name = "palm"}, box_link("tip", 0.004, Vec3(0.01, 0.01, 0.01), Vec3(0.04, 0, 0))};
+  model.links[1].inertial = {0.004, Vec3(0.04, 0, 0), Vec3(6e-8, 7.5e-6 - 0.004 * 0.0016, 7.5e-6 - 0.004 * 0.0016).asDiagonal()};
+  model.joints = {joint("hinge", robot::JointType::revolute, Vec3::UnitY(), Vec3::Zero())};
+  RobotScene scene;
+  scene.world.gravity.setZero();
+  scene.robots = {part("finger", model, Vec3(-0.04, 0, 0.0056))};
+  scene.robots[0].params.drives = {{.kp = 50, .kd = 0.5}};
+  scene.robots[0].commands = {{Kind::position, 0.06, 0, 0}};  // 2.4 mm down at the tip
+  tape::Setup setup = free_strip(0.01, 1e-6);
+  setup.scene.grips = {tape::test::hold("left", {0, 1, 2, 3})};
+  const int last = static_cast<int>(tape::World::build(setup).assembly.x.size());
+  setup.scene.grips.push_back(tape::test::hold("right", {last - 4, last - 3, last - 2, last - 1}));
+  Coupled both(setup, scene);
+  for (int k = 0; k < 30; ++k) {
+    const robot::Snapshot start = both.bullet().save();
+    robot::World alone = make_world(scene), pushed = make_world(scene);
+    ASSERT_TRUE(both.step()) << both.report.failure;
+    if (k > 0) alone.restore(start), pushed.restore(start);
+    const Real q0 = alone.state(0).q[0];
+    alone.step(0.01);
+    pushed.step(0.01, {both.report.articulations[0].force.head(1)});
+    const Real moved = both.report.articulations[0].q[0], course = alone.state(0).q[0] - q0, answer = pushed.state(0).q[0] - q0;
+    // What the tape solve gave way by is what the drive gives way by.
+    EXPECT_NEAR(moved - course, answer - course, 0.01 * std::fabs(answer - course) + 1e-12) << k;
+  }
+  const Real torque = both.report.articulations[0].force[0];
+  EXPECT_LT(torque, -0.002);
+  EXPECT_NEAR(both.bullet().state(0).q[0] - 0.06, torque / 50, 0.01 * std::fabs(torque) / 50);  // at rest: the drive's spring
+}
+/// 5 N on a pad on a slide, on tape, on a box that stands still.
+TEST(Exchange, APadPressesTheTapeWithItsDrivesForce) {
+  RobotModel model{.name = "press"};
+  model.links = {{.name = "rail"}, box_link("pad", 0.05, Vec3(0.012, 0.012, 0.01))};
+  model.joints = {joint("slide", robot::JointType::prismatic, -Vec3::UnitZ(), Vec3::Zero())};
+  RobotScene scene;
+  scene.robots = {part("press", model, Vec3(0, 0, 0.0056))};
+  scene.robots[0].commands = {{Kind::effort, 0, 0, 5 - 0.05 * 9.81}};
+  tape::Setup setup = free_strip(0.01, 1e-4);
+  setup.scene.gravity = Vec3(0, 0, -9.81);
+  tape::test::add_body(setup, "box", tape::box_mesh(Vec3(0.1, 0.05, 0.02)), tape::Motion::fixed, Vec3(0, 0, -0.0103));
+  Coupled both(setup, scene);
+  for (int k = 0; k < 40; ++k) ASSERT_TRUE(both.step()) << both.report.failure;
+  EXPECT_NEAR(both.link(0, 0).normal.force.z(), 5, 0.02 * 5);
+}
