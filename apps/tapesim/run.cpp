@@ -14,6 +14,7 @@
 #include "apps/tapesim/run_folder.hpp"
 #include "apps/tapesim/scene_input.hpp"
 #include "apps/tapesim/settings_list.hpp"
+#include "cosim/exchange/exchange.hpp"
 #include "cosim/run/summary.hpp"
 #include "tape/core/execution.hpp"
 
@@ -104,7 +105,7 @@ int run(const RunArguments& arguments) {
   const Backend backend = backend_of(arguments.backend);
   const LoadedWorld loaded = load_world(arguments.scene, Rolls::settle);
   if (arguments.video) require_video(loaded.input.pictures);
-  const std::unique_ptr<Stepper> stepper = make_stepper(backend, loaded.world);
+  const std::unique_ptr<Stepper> stepper = cosim::make_stepper(backend, loaded.world, loaded.input.run.robots);
   State state = arguments.resume.empty() ? State::start(loaded.world) : resumed(arguments.resume, loaded.world);
   const int first_step = state.step;
   RunFolder folder(arguments.out.empty() ? "out/" + loaded.world.setup.scene.name : arguments.out, loaded.world, state,

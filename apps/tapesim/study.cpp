@@ -14,6 +14,7 @@
 #include "apps/tapesim/progress.hpp"
 #include "apps/tapesim/scene_input.hpp"
 #include "apps/tapesim/study_store.hpp"
+#include "cosim/exchange/exchange.hpp"
 #include "cosim/run/new_file.hpp"
 #include "cosim/run/summary.hpp"
 #include "tape/core/execution.hpp"
@@ -46,7 +47,7 @@ StudyRun run_one(const Study& study, const std::vector<std::string>& values, con
   State state = State::start(loaded.world);
   const std::string key = key_of(study, values, loaded, state);
   if (store.find(key, result)) return result;
-  const std::unique_ptr<Stepper> stepper = make_stepper(Backend::cpu, loaded.world);
+  const std::unique_ptr<Stepper> stepper = cosim::make_stepper(Backend::cpu, loaded.world, loaded.input.run.robots);
   cosim::RunOptions options{.record = loaded.input.run.record};
   options.stop_asked = interrupted;
   const cosim::RunLog log = simulate(loaded.world, *stepper, state, options);

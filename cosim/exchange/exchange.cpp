@@ -48,8 +48,8 @@ int coordinates(const robot::World& world, int robot) { return static_cast<int>(
 
 tape::Pose to_tape(const robot::Pose& pose) { return {pose.linear(), pose.translation()}; }
 
-CoupledStepper::CoupledStepper(const RobotScene& robots, const tape::World& world, std::unique_ptr<tape::Stepper> tape, Commands commands)
-    : robots_(robots), world_(world), tape_(std::move(tape)), commands_(std::move(commands)), bullet_(make_world(robots)) {
+CoupledStepper::CoupledStepper(const RobotScene& robots, const tape::World& world, std::unique_ptr<tape::Stepper> tape)
+    : robots_(robots), world_(world), tape_(std::move(tape)), bullet_(make_world(robots)) {
   const tape::Scene& scene = world.setup.scene;
   for (const tape::Articulation& articulation : scene.articulations) {
     const auto named = [&](const RobotPart& part) { return part.name == articulation.name; };
@@ -108,10 +108,8 @@ tape::StepReport CoupledStepper::step(tape::State& state, const tape::Exchange&)
   const double dt = world_.setup.scene.time.dt;
   report_ = {};
   restore(state);
-  if (commands_) {
-    const std::vector<std::vector<robot::JointCommand>> commands = commands_(bullet_, state.time);
-    for (std::size_t r = 0; r < commands.size(); ++r) bullet_.command(static_cast<int>(r), commands[r]);
-  }
+  for (std::size_t r = 0; r < robots_.robots.size(); ++r)
+    bullet_.command(static_cast<int>(r), commands_at(robots_.robots[r], (state.step + 1) * dt));
   const robot::Snapshot start = bullet_.save();
   tape::State next = state;
   tape::StepReport report = robots_.exchange.schedule == Schedule::iterated ? step_in_turns(next, dt, start) : step_once(next, dt, start);
@@ -230,5 +228,11 @@ void CoupledStepper::note_mismatch(const tape::State& state) {
       report_.mismatch = std::max(report_.mismatch, (state.bodies[static_cast<std::size_t>(part.bodies[l])].pose.position -
                                                      bullet_.link_pose(part.robot, part.links[l]).translation())
                                                         .norm());
+}
+
+std::unique_ptr<tape::Stepper> make_stepper(tape::Backend backend, const tape::World& world, const RobotScene& robots) {
+  std::unique_ptr<tape::Stepper> tape = tape::make_stepper(backend, world);
+  if (robots.robots.empty()) return tape;
+  return std::make_unique<CoupledStepper>(robots, world, std::move(tape));
 }
 }  // namespace cosim

@@ -1,5 +1,4 @@
 #pragma once
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -26,9 +25,7 @@ tape::Pose to_tape(const robot::Pose& pose);
 /// State::outside.
 class CoupledStepper final : public tape::Stepper {
  public:
-  /// @param commands  [robots] given to the drives before a step that starts at a time [s]; may be empty
-  using Commands = std::function<std::vector<std::vector<robot::JointCommand>>(const robot::World&, double)>;
-  CoupledStepper(const RobotScene& robots, const tape::World& world, std::unique_ptr<tape::Stepper> tape, Commands commands = {});
+  CoupledStepper(const RobotScene& robots, const tape::World& world, std::unique_ptr<tape::Stepper> tape);
   tape::StepReport step(tape::State& state, const tape::Exchange& more = {}) override;
   std::vector<double> contact_force() const override { return tape_->contact_force(); }
   const robot::World& bullet() const { return bullet_; }
@@ -54,10 +51,12 @@ class CoupledStepper final : public tape::Stepper {
   RobotScene robots_;
   const tape::World& world_;
   std::unique_ptr<tape::Stepper> tape_;
-  Commands commands_;
   robot::World bullet_;
   robot::Snapshot start_;
   std::vector<Part> parts_;
   ExchangeReport report_;
 };
+
+/// The stepper of a scene: coupled if it has robots.  @throws InputError if the back end is not there
+std::unique_ptr<tape::Stepper> make_stepper(tape::Backend backend, const tape::World& world, const RobotScene& robots);
 }  // namespace cosim

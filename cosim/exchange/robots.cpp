@@ -4,6 +4,22 @@
 #include "cosim/exchange/proxy.hpp"
 
 namespace cosim {
+std::vector<robot::JointCommand> commands_at(const RobotPart& robot, double time) {
+  std::vector<robot::JointCommand> commands;
+  for (Eigen::Index k = 0; k < robot.start.size(); ++k)
+    commands.push_back(
+        {robot::JointCommand::Kind::position, robot.start[k], 0, robot.push.empty() ? 0 : robot.push[static_cast<std::size_t>(k)]});
+  for (const robot::JointTrajectory& motion : robot.motions) {
+    if (time < motion.start()) continue;
+    const robot::JointTrajectory::Point at = motion.at(time);
+    for (std::size_t k = 0; k < motion.joints.size(); ++k) {
+      robot::JointCommand& command = commands[static_cast<std::size_t>(robot.model->find_joint(motion.joints[k]))];
+      command.position = at.q[static_cast<Eigen::Index>(k)], command.velocity = at.v[static_cast<Eigen::Index>(k)];
+    }
+  }
+  return commands;
+}
+
 std::string body_name(const RobotPart& robot, int link) {
   return robot.name + ":" + robot.model->links[static_cast<std::size_t>(link)].name;
 }
@@ -36,7 +52,7 @@ robot::World make_world(const RobotScene& robots) {
     robot::VecX v = robot::VecX::Zero(world.dof(r));
     if (!part.params.fixed_base) v.head<3>() = part.velocity;
     world.set_state(r, {part.params.X_WB, part.start, v});
-    world.command(r, part.commands);
+    world.command(r, commands_at(part, 0));
   }
   return world;
 }

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "robot/control/trajectory.hpp"
 #include "robot/world/world.hpp"
 #include "tape/core/settings.hpp"
 #include "tape/model/scene.hpp"
@@ -29,13 +30,14 @@ struct ExchangeParams {
 /// A robot or a prop of a scene.
 struct RobotPart {
   std::string name;
-  std::shared_ptr<const robot::RobotModel> model;
-  robot::RobotParams params;
-  robot::VecX start;                           ///< [nj] joint positions
-  std::vector<robot::JointCommand> commands;   ///< [nj] at the start
-  robot::Vec3 velocity = robot::Vec3::Zero();  ///< [m/s] of a free base at the start
-  int material = 0;                            ///< of all its links, index into tape::Scene::materials
-  double xi = 0;                               ///< [m] half-thickness of their surfaces
+  std::shared_ptr<const robot::RobotModel> model = {};
+  robot::RobotParams params = {};
+  robot::VecX start = {};                            ///< [nj] joint positions
+  std::vector<robot::JointTrajectory> motions = {};  ///< times [s] of the simulation; of two that move a joint, the later one does
+  robot::Vec3 velocity = robot::Vec3::Zero();        ///< [m/s] of a free base at the start
+  std::vector<double> push = {};                     ///< [nj] N m or N that the drives exert beside what they hold, or empty
+  int material = 0;                                  ///< of all its links, index into tape::Scene::materials
+  double xi = 0;                                     ///< [m] half-thickness of their surfaces
 };
 
 struct RobotScene {
@@ -43,6 +45,9 @@ struct RobotScene {
   robot::WorldParams world;
   std::vector<RobotPart> robots;
 };
+
+/// What the drives of a robot are told at a time: [nj] positions and velocities of its motions, the start where none has begun.
+std::vector<robot::JointCommand> commands_at(const RobotPart& robot, double time);
 
 /// "robot:link", the body that a link is on the tape side.
 std::string body_name(const RobotPart& robot, int link);

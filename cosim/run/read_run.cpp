@@ -4,9 +4,10 @@
 
 namespace cosim {
 RunInput read_run(SceneFile scene) {
-  RunInput input{.file = std::move(scene), .setup = {}, .record = {}, .figures = {}, .roll_asset = {}};
+  RunInput input{.file = std::move(scene), .setup = {}, .robots = {}, .record = {}, .figures = {}, .roll_asset = {}};
   const SceneFile& file = input.file;
-  input.setup.scene = read_scene(file);
+  BothWorlds both = read_worlds(file);
+  input.setup.scene = std::move(both.tape), input.robots = std::move(both.robots);
   std::vector<std::string> effects;
   for_each_effect([&]<class T>(std::type_identity<T>) {
     effects.emplace_back(T::name);

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "cosim/exchange/robots.hpp"
 #include "cosim/run/run_log.hpp"
 #include "cosim/scene/scene_file.hpp"
 
@@ -11,6 +12,7 @@ namespace cosim {
 struct RunInput {
   SceneFile file;
   Setup setup;
+  RobotScene robots;
   RecordParams record;
   std::vector<std::string> figures;
   bool settle_roll = true;           ///< off: a roll starts as it is wound

@@ -5,6 +5,7 @@
 
 #include "cosim/scene/bodies.hpp"
 #include "cosim/scene/pose.hpp"
+#include "cosim/scene/robots.hpp"
 #include "cosim/scene/roll.hpp"
 #include "cosim/scene/script.hpp"
 #include "tape/model/strip_mesh.hpp"
@@ -19,7 +20,7 @@ class SceneReader {
  public:
   explicit SceneReader(const SceneFile& file) : file_(file) {}
 
-  Scene read() {
+  BothWorlds read() {
     scene_.name = file_["scene"].text_or(file_.path().stem().string());
     if (scene_.name.find('/') != std::string::npos)
       file_["scene"].fail("the name of a scene holds no slash: it names the folder of its runs");
@@ -32,12 +33,13 @@ class SceneReader {
     if (const Reader film = file_["film"]) scene_.films.push_back(load_film(film, file_.path()));
     strips();
     bodies();
+    robots();
     for (const Reader& entry : file_["interfaces"].items()) interface(entry);
     model();
     for (const Reader& entry : file_["axles"].items()) axle(entry);
-    read_script(file_["script"], meshes_, scene_);
+    read_script(file_, meshes_, scene_, robots_);
     if (scene_.strips.empty() && scene_.bodies.empty()) file_.root().fail("there is nothing to simulate: neither a strip nor a body");
-    return std::move(scene_);
+    return {std::move(scene_), std::move(robots_)};
   }
 
  private:
@@ -158,6 +160,15 @@ class SceneReader {
       claim_name(name, body);
       scene_.bodies.push_back(read_body(body, name, file_.path()));
       scene_.bodies.back().material = material(body["material"].text_or("default"));
+    }
+  }
+
+  void robots() {
+    robots_ = read_robots(file_, scene_.gravity, [&](const std::string& name) { return material(name); });
+    try {
+      add_links(robots_, scene_);
+    } catch (const robot::InputError& e) {
+      file_["robots"].fail(e.what());
     }
   }
 
@@ -305,11 +316,12 @@ class SceneReader {
 
   const SceneFile& file_;
   Scene scene_;
+  RobotScene robots_;
   std::vector<tape::StripMesh> meshes_;  // [strips]
 };
 }  // namespace
 
-Scene read_scene(const SceneFile& file) { return SceneReader(file).read(); }
+BothWorlds read_worlds(const SceneFile& file) { return SceneReader(file).read(); }
 
 tape::Film load_film(const Reader& asked_by, const std::filesystem::path& scene_file) {
   const Reader name = asked_by.is_map() ? asked_by["from"] : asked_by;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cosim/scene/pose.hpp"
+#include "cosim/scene/robots.hpp"
 
 namespace cosim {
 namespace {
@@ -15,7 +16,8 @@ const Range kTime = Range::closed(0, kForever);
 
 class Compiler {
  public:
-  Compiler(const std::vector<tape::StripMesh>& meshes, tape::Scene& scene) : meshes_(meshes), scene_(scene) {}
+  Compiler(const SceneFile& file, const std::vector<tape::StripMesh>& meshes, tape::Scene& scene, RobotScene& robots)
+      : file_(file), meshes_(meshes), scene_(scene), robots_(robots) {}
 
   void entry(const Reader& entry) {
     if (!entry.is_map()) entry.fail("must be a section such as {wait: 1}");
@@ -26,10 +28,13 @@ class Compiler {
       move(entry, start);
     } else if (entry["release"]) {
       release(entry, start);
+    } else if (entry["robot"]) {
+      const Real end = read_robot_motion(entry, file_, start, robots_);
+      now_ = entry["wait"].flag_or(true) ? end : start;
     } else if (const Reader wait = entry["wait"]) {
       now_ = start + wait.number(kTime, "s");
     } else {
-      entry.fail("must hold one of grip, move, release, wait");
+      entry.fail("must hold one of grip, move, release, robot, wait");
     }
   }
 
@@ -151,14 +156,16 @@ class Compiler {
     return names;
   }
 
+  const SceneFile& file_;
   const std::vector<tape::StripMesh>& meshes_;
   tape::Scene& scene_;
+  RobotScene& robots_;
   Real now_ = 0;  // [s]
 };
 }  // namespace
 
-void read_script(const Reader& script, const std::vector<tape::StripMesh>& meshes, tape::Scene& scene) {
-  Compiler compiler(meshes, scene);
-  for (const Reader& entry : script.items()) compiler.entry(entry);
+void read_script(const SceneFile& file, const std::vector<tape::StripMesh>& meshes, tape::Scene& scene, RobotScene& robots) {
+  Compiler compiler(file, meshes, scene, robots);
+  for (const Reader& entry : file["script"].items()) compiler.entry(entry);
 }
 }  // namespace cosim

@@ -51,7 +51,7 @@ TEST(Exchange, AFloatingRobotAndAStripKeepTheirMomentum) {
 }
 TEST(Exchange, BulletAloneGoesItsWayWhereNoTapeIs) {
   RobotScene far = two_links(Vec3(0.05, 0, 0.3), {{.kp = 0.1, .kd = 1e-4}});
-  far.robots[0].commands[0] = {Kind::position, 0.4, 0, 0};
+  far.robots[0].motions = {stand("hinge", 0.4)};
   Coupled both(free_strip(0.01, 1e-3), far);
   robot::World alone = make_world(far);
   for (int k = 0; k < 10; ++k) {
@@ -93,7 +93,7 @@ TEST(Exchange, ADrivenFingerGivesWayAsItsDriveAloneWould) {
   scene.world.gravity.setZero();
   scene.robots = {part("finger", model, Vec3(-0.04, 0, 0.0056))};
   scene.robots[0].params.drives = {{.kp = 50, .kd = 0.5}};
-  scene.robots[0].commands = {{Kind::position, 0.06, 0, 0}};  // 2.4 mm down at the tip
+  scene.robots[0].motions = {stand("hinge", 0.06)};  // 2.4 mm down at the tip
   tape::Setup setup = free_strip(0.01, 1e-6);
   setup.scene.grips = {tape::test::hold("left", {0, 1, 2, 3})};
   const int last = static_cast<int>(tape::World::build(setup).assembly.x.size());
@@ -122,7 +122,7 @@ TEST(Exchange, APadPressesTheTapeWithItsDrivesForce) {
   model.joints = {joint("slide", robot::JointType::prismatic, -Vec3::UnitZ(), Vec3::Zero())};
   RobotScene scene;
   scene.robots = {part("press", model, Vec3(0, 0, 0.0056))};
-  scene.robots[0].commands = {{Kind::effort, 0, 0, 5 - 0.05 * 9.81}};
+  scene.robots[0].push = {5 - 0.05 * 9.81};
   tape::Setup setup = free_strip(0.01, 1e-4);
   setup.scene.gravity = Vec3(0, 0, -9.81);
   tape::test::add_body(setup, "box", tape::box_mesh(Vec3(0.1, 0.05, 0.02)), tape::Motion::fixed, Vec3(0, 0, -0.0103));

@@ -7,9 +7,7 @@
 
 /// Robots and worlds of the tests of the exchange.
 namespace cosim::test {
-using robot::JointCommand;
 using robot::RobotModel;
-using Kind = JointCommand::Kind;
 
 inline robot::Link box_link(const std::string& name, double mass, const robot::Vec3& size,
                             const robot::Vec3& centre = robot::Vec3::Zero()) {
@@ -27,11 +25,15 @@ inline robot::Joint joint(const std::string& name, robot::JointType type, const 
 inline RobotPart part(const std::string& name, RobotModel model, const robot::Vec3& at, bool fixed_base = true) {
   const auto joints = static_cast<Eigen::Index>(model.joints.size());
   for (std::size_t k = 0; k < model.joints.size(); ++k) model.may_overlap.emplace_back(model.joints[k].parent, static_cast<int>(k) + 1);
-  RobotPart out{name, std::make_shared<const RobotModel>(std::move(model)), {}, robot::VecX::Zero(joints), {}};
+  RobotPart out{.name = name, .model = std::make_shared<const RobotModel>(std::move(model)), .start = robot::VecX::Zero(joints)};
   out.params.X_WB.translation() = at;
   out.params.fixed_base = fixed_base;
-  out.commands.resize(static_cast<std::size_t>(joints));
   return out;
+}
+
+/// One joint held at a position from the beginning.
+inline robot::JointTrajectory stand(const std::string& joint, double position) {
+  return {.joints = {joint}, .times = {0}, .knots = {robot::VecX::Constant(1, position)}};
 }
 
 /// Both worlds of a scene, in step.

@@ -14,7 +14,7 @@ std::string refusal(const std::string& text, const fs::path& path = fs::path(TAP
                     const std::vector<std::string>& overrides = {}) {
   try {
     const SceneFile file = SceneFile::parse(text, path, overrides);
-    read_scene(file);
+    read_worlds(file);
     file.require_all_used();
   } catch (const tape::InputError& e) {
     return e.what();

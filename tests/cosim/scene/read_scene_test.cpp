@@ -21,7 +21,7 @@ const fs::path kScenes = fs::path(TAPE_SOURCE_DIR) / "data" / "scenes";
 /// Reads a scene that stands beside the project's own.
 tape::Scene read(const std::string& text, const std::vector<std::string>& overrides = {}) {
   const SceneFile file = SceneFile::parse(text, kScenes / "test.yaml", overrides);
-  tape::Scene scene = read_scene(file);
+  tape::Scene scene = read_worlds(file).tape;
   file.require_all_used();
   return scene;
 }
@@ -39,7 +39,7 @@ solver: {velocity_tol: 1e-3}
 record: {rate: 30, figures: [peel_force]}
 )";
   const SceneFile file = SceneFile::parse(text, kScenes / "test.yaml");
-  const tape::Scene scene = read_scene(file);
+  const tape::Scene scene = read_worlds(file).tape;
   tape::NewtonParams newton;
   file.read("solver", newton);
   EXPECT_EQ(newton.velocity_tol, 1e-3);
@@ -245,7 +245,7 @@ TEST(ReadScene, MeshFilesAreReadScaledAndJoined) {
 <scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
   for (const auto& [name, unit] : {std::pair{"t.obj", 1.0}, {"t.stl", 1.0}, {"t.dae", 0.01}}) {
     const std::string text = std::string("bodies: {t: {shape: mesh, scale: 0.1, motion: dynamic, file: ") + name + "}}\n";
-    const tape::TriangleMesh mesh = read_scene(SceneFile::parse(text, folder / "scene.yaml")).bodies[0].mesh;
+    const tape::TriangleMesh mesh = read_worlds(SceneFile::parse(text, folder / "scene.yaml")).tape.bodies[0].mesh;
     EXPECT_EQ(mesh.vertices.size(), 4u) << name;
     EXPECT_EQ(mesh.triangles.size(), 4u) << name;
     Vec3 high = Vec3::Zero();

@@ -12,7 +12,7 @@ namespace {
 const std::filesystem::path kScene = std::filesystem::path(TAPE_SOURCE_DIR) / "data" / "scenes" / "wound.yaml";
 tape::Scene read(const std::string& text, const std::vector<std::string>& overrides = {}) {
   const SceneFile file = SceneFile::parse(text, kScene, overrides);
-  tape::Scene scene = read_scene(file);
+  tape::Scene scene = read_worlds(file).tape;
   file.require_all_used();
   return scene;
 }

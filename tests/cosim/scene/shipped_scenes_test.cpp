@@ -71,7 +71,7 @@ TEST(ShippedScenes, EveryOneLoadsWithoutUnknownKeys) {
   EXPECT_GE(files.size(), 8u);
   for (const fs::path& path : files) {
     const SceneFile file = SceneFile::load(path);
-    EXPECT_EQ(read_scene(file).name, path.stem().string());
+    EXPECT_EQ(read_worlds(file).tape.name, path.stem().string());
     for (const char* section : {"solver", "record", "camera", "cameras", "video", "effects"}) know_all(file[section]);
     for (const char* section : {"barrier", "friction", "bending", "membrane", "tether"}) know_all(file[section]);
     EXPECT_NO_THROW(file.require_all_used()) << path;
@@ -80,7 +80,7 @@ TEST(ShippedScenes, EveryOneLoadsWithoutUnknownKeys) {
 
 TEST(ShippedScenes, StartWithGapsAboveHalfTheActivationDistance) {
   for (const fs::path& path : shipped("scenes")) {
-    const tape::Scene scene = read_scene(SceneFile::load(path));
+    const tape::Scene scene = read_worlds(SceneFile::load(path)).tape;
     const std::vector<Surface> all = surfaces(scene);
     for (const Surface& a : all)
       for (const Surface& b : all)

@@ -1,0 +1,19 @@
+#pragma once
+#include <functional>
+
+#include "cosim/exchange/robots.hpp"
+#include "cosim/scene/scene_file.hpp"
+
+namespace cosim {
+/// The sections `robots`, `physics` and `exchange` of a scene file (README.md).
+/// @param material  index of a material by name, made if there is none
+/// @throws InputError "file:line: key = value: reason"
+RobotScene read_robots(const SceneFile& file, const Vec3& gravity, const std::function<int(const std::string&)>& material);
+
+/// An entry of the script that names a robot: {robot: arm, joints: {...}}, {robot: hand, posture: pinch}, {robot: arm, frame: flange, by:
+/// [...]}, {robot: arm, trajectory: file.csv}. Appends the motion to the robot's.
+/// @param start  [s]
+/// @return [s] when it ends
+/// @throws InputError
+Real read_robot_motion(const Reader& entry, const SceneFile& file, Real start, RobotScene& robots);
+}  // namespace cosim
