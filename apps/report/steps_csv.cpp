@@ -40,7 +40,17 @@ void visit_columns(const World& world, const cosim::StepRow& row, const F& f) {
   for (std::size_t k = 0; k < world.setup.scene.axles.size(); ++k)
     f("axle_" + world.setup.scene.axles[k].body + "_Nm", k < r.axle_torque.size() ? r.axle_torque[k] : 0);
   for (std::size_t b = 0; b < world.setup.scene.bodies.size(); ++b)
-    if (world.assembly.bodies[b].motion != Motion::fixed) vector("body_" + world.setup.scene.bodies[b].name, "N", at(r.body_force, b));
+    if (const Motion m = world.assembly.bodies[b].motion; m == Motion::driven || m == Motion::dynamic)
+      vector("body_" + world.setup.scene.bodies[b].name, "N", at(r.body_force, b));
+  for (std::size_t a = 0; a < world.setup.scene.articulations.size(); ++a) {
+    const std::vector<std::string>& links = world.setup.scene.articulations[a].links;
+    for (std::size_t l = 0; l < links.size(); ++l) {
+      const LinkReport link = a < r.articulations.size() ? r.articulations[a].links[l] : LinkReport{};
+      for (const auto& [what, wrench] : {std::pair{"_normal", link.normal}, {"_friction", link.friction}, {"_adhesion", link.adhesion}})
+        vector("link_" + links[l] + what, "N", wrench.force), vector("link_" + links[l] + what, "Nm", wrench.torque);
+    }
+  }
+  if (!world.setup.scene.articulations.empty()) f("momentum_exchange_residual", r.exchange_residual);
 }
 }  // namespace
 

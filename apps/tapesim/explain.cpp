@@ -32,7 +32,7 @@ std::string reason(const cosim::RunInput& input, const PlanLine& line) {
 }
 
 /// Stages of a step that are not effects, and parts of the testbed that this build leaves out.
-std::vector<Line> stages(const World& world) {
+std::vector<Line> stages(const World& world, const cosim::RobotScene& robots) {
   std::string remembering;
   for_each_effect([&]<class T>(std::type_identity<T>) {
     if (Remembers<T> && world.is_on(T::name)) remembering += (remembering.empty() ? "" : ", ") + std::string(T::name);
@@ -50,7 +50,7 @@ std::vector<Line> stages(const World& world) {
       {"reduction", !world.graphs.empty(), world.graphs.empty() ? "no model that is reduced" : "model"},
       {"cutting", false, "not in this build"},
       {"sleeping", false, "not in this build"},
-      {"cosim", false, "not in this build"},
+      {"cosim", !robots.robots.empty(), robots.robots.empty() ? "no robots" : "robots"},
   };
 }
 
@@ -60,7 +60,7 @@ int explain(const SceneArguments& arguments, const std::string& backend_name) {
   const std::string backend = backend_name == "cpu" || !cuda_available() ? "cpu" : "cuda";
   std::vector<Line> lines;
   for (const PlanLine& line : loaded.world.plan) lines.push_back({line.name, line.on, reason(loaded.input.run, line)});
-  for (Line& line : stages(loaded.world)) lines.push_back(std::move(line));
+  for (Line& line : stages(loaded.world, loaded.input.run.robots)) lines.push_back(std::move(line));
   for (const Line& line : lines) {
     const bool host = line.name == "linear_solver" && loaded.world.setup.linear.linear == LinearKind::cholesky;
     const std::string where = line.on ? fmt::format(" [{}]", host ? "cpu" : backend) : "";

@@ -2,6 +2,7 @@
 
 #include "apps/report/table.hpp"
 #include "apps/tapesim/pictures.hpp"
+#include "cosim/exchange/robots.hpp"
 #include "cosim/run/run_log.hpp"
 #include "tape/step/world.hpp"
 
@@ -60,6 +61,7 @@ std::string settings_text() {
   add<NewtonParams>(table, "solver");
   add<LinearParams>(table, "solver");
   for_each_effect([&]<class T>(std::type_identity<T>) { add<typename T::Params>(table, std::string(T::name)); });
+  add<cosim::ExchangeParams>(table, "exchange");
   add<cosim::RecordParams>(table, "record");
   add<ViewParams>(table, "video");
   add<video::VideoSettings>(table, "video");

@@ -114,6 +114,7 @@ tape::StepReport CoupledStepper::step(tape::State& state, const tape::Exchange&)
   tape::State next = state;
   tape::StepReport report = robots_.exchange.schedule == Schedule::iterated ? step_in_turns(next, dt, start) : step_once(next, dt, start);
   report.stages.push_back({"bullet", report_.bullet_ms});
+  report.exchange_residual = report_.residual;
   if (!report.ok) return report;
   next.outside = bullet_.save().numbers;
   state = std::move(next);

@@ -33,10 +33,10 @@ Real total(const RunLog& log, F&& value) {
   return sum;
 }
 
-/// Work of a driven body is known to the first order in dt only; that of grips exactly.
+/// Work of driven bodies and of links is known to the first order in dt only; that of grips exactly.
 Real energy_tolerance(const World& world) {
   for (const BodyPart& body : world.assembly.bodies)
-    if (body.motion == Motion::driven) return 0.05;
+    if (body.motion == Motion::driven || body.motion == Motion::linked) return 0.05;
   return 1e-6;
 }
 /// What tape that sticks by area needs, the worst of all: the mesh must resolve the fold, of radius sqrt(D/2R), and the zone behind the

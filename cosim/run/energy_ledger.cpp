@@ -45,6 +45,13 @@ Real EnergyLedger::body_work(const State& state) const {
   return work;
 }
 
+/// [J] of the links on what they touch, at the forces of the step's end.
+Real EnergyLedger::link_work(const StepReport& report) {
+  Real work = 0;
+  for (const ArticulationReport& a : report.articulations) work -= a.force.dot(a.q);
+  return work;
+}
+
 EnergyLedger::Entry EnergyLedger::after(const State& state, const StepReport& report) {
   std::vector<Real> energies;
   for (const EffectReport& effect : report.effects) energies.push_back(effect.energy);
@@ -53,7 +60,7 @@ EnergyLedger::Entry EnergyLedger::after(const State& state, const StepReport& re
     first_energies_ = energies;
     first_energy_ = report.kinetic;
   } else {
-    work_ += grip_work_ + body_work(state) + report.adhesion_work + report.woken + report.axle_work;
+    work_ += grip_work_ + body_work(state) + link_work(report) + report.adhesion_work + report.woken + report.axle_work;
   }
   Entry entry{.work = work_};
   Real about = report.kinetic + std::abs(work_);

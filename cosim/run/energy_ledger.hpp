@@ -22,6 +22,7 @@ class EnergyLedger {
 
  private:
   Real body_work(const State& state) const;
+  static Real link_work(const StepReport& report);
   const World* world_;
   std::vector<BodyDrive::Element> drives_;
   State start_;                    // of the step, grips closed

@@ -80,6 +80,34 @@ FigureValues rest_speed(const World&, const RunLog& log) {
   return {{"rest_speed_m_per_s", most}};
 }
 
+/// Of each link that the tape side has touched: force of all contacts on it, mean over the second half of the run, and largest.
+FigureValues link_force(const World& world, const RunLog& log) {
+  FigureValues values;
+  for (std::size_t a = 0; a < world.setup.scene.articulations.size(); ++a) {
+    const std::vector<std::string>& links = world.setup.scene.articulations[a].links;
+    for (std::size_t l = 0; l < links.size(); ++l) {
+      Vec3 sum = Vec3::Zero();
+      Real most = 0;
+      for (std::size_t r = 0; r < log.rows.size(); ++r) {
+        const LinkReport& link = log.rows[r].report.articulations[a].links[l];
+        const Vec3 force = link.normal.force + link.friction.force + link.adhesion.force;
+        most = std::max(most, force.norm());
+        if (2 * r >= log.rows.size()) sum += force;
+      }
+      if (most == 0) continue;
+      values.emplace_back("link_force_mean_N." + links[l], sum.norm() / static_cast<Real>(log.rows.size() - log.rows.size() / 2));
+      values.emplace_back("link_force_max_N." + links[l], most);
+    }
+  }
+  return values;
+}
+
+FigureValues momentum_exchange(const World&, const RunLog& log) {
+  Real most = 0;
+  for (const StepRow& row : log.rows) most = std::max(most, row.report.exchange_residual);
+  return {{"momentum_exchange_residual", most}};
+}
+
 FigureValues max_strain(const World&, const RunLog& log) {
   Real most = 0;
   for (const StepRow& row : log.rows) most = std::max(most, row.report.max_strain);
@@ -169,6 +197,9 @@ constexpr Figure kFigures[] = {
      boundary_advance},
     {"hub_range", "range of the hub's turning about its axis since its last grip was released", hub_range},
     {"hub_travel", "how far the centre of the hub ends from where it started", hub_travel},
+    {"link_force", "force of the tape side on each link that it touches: mean over the second half of the run, and largest", link_force},
+    {"momentum_exchange", "momentum given to robots with a free base that did not arrive, of what was given: worst step",
+     momentum_exchange},
     {"roll", "turns, length, outer radius, mass and inertia of what is wound at the end", roll},
 };
 
@@ -193,6 +224,7 @@ std::string why_unfit(std::string_view name, const World& world) {
   const Scene& scene = world.setup.scene;
   if (name == "tip" && scene.strips.empty()) return "the scene has no strip";
   if (name == "capstan_ratio" && scene.grips.size() < 2) return "the scene has fewer than two grips";
+  if ((name == "link_force" || name == "momentum_exchange") && scene.articulations.empty()) return "the scene has no robot that moves";
   const bool of_roll = name == "hub_range" || name == "hub_travel" || name == "roll";
   if (of_roll && first_roll(world) == scene.strips.size()) return "the scene has no roll";
   const bool of_interface = name == "peel_force" || name == "boundary_advance";

@@ -68,6 +68,7 @@ struct StepReport {
   std::vector<Vec3> body_force;                   ///< [bodies] N of contact and grips on the body (driven and dynamic)
   std::vector<Pose> body_pose;                    ///< [bodies] X_WB at the end
   std::vector<ArticulationReport> articulations;  ///< [Scene::articulations]
+  Real exchange_residual = 0;                     ///< [1] momentum given to articulations that did not arrive, of what was given
   Real wall_ms = 0;
 };
 
