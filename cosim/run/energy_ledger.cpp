@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "tape/effects/body_inertia.inl"
 #include "tape/math/rotation.hpp"
 
 namespace cosim {

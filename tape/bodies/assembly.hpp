@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "tape/bodies/body_mass.hpp"
-#include "tape/bodies/path.hpp"
+#include "tape/bodies/vertex_owner.hpp"
 #include "tape/model/scene.hpp"
 #include "tape/model/strip_mesh.hpp"
 

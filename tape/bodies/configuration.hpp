@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "tape/bodies/assembly.hpp"
+#include "tape/bodies/path.hpp"
 #include "tape/core/side.hpp"
 #include "tape/math/rotation.hpp"
 

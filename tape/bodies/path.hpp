@@ -1,15 +1,9 @@
 #pragma once
+#include "tape/bodies/vertex_owner.hpp"
 #include "tape/core/types.hpp"
 #include "tape/math/rotation.hpp"
 
 namespace tape {
-/// What moves a vertex. `block` is its first 3-block of unknowns, -1 if it is fixed; `body` the rigid body that carries it,
-/// -1 if the vertex is itself an unknown. A rigid body has two blocks: translation, then rotation about its centre.
-struct VertexOwner {
-  int block = -1;
-  int body = -1;
-};
-
 /// A vertex over a trial step: x(t) = centre + exp(t spin) arm + t velocity, t in [0, 1]. Free vertices have no arm.
 struct VertexPath {
   Vec3 centre;    ///< [m]

@@ -1,5 +1,4 @@
 #pragma once
-#include "tape/bodies/path.hpp"
 #include "tape/bodies/state_view.hpp"
 
 namespace tape {

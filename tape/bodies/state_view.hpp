@@ -1,6 +1,6 @@
 #pragma once
 #include "tape/bodies/body_mass.hpp"
-#include "tape/bodies/path.hpp"
+#include "tape/bodies/vertex_owner.hpp"
 #include "tape/core/types.hpp"
 #include "tape/model/adhesion.hpp"
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "tape/bodies/path.hpp"
+#include "tape/bodies/vertex_owner.hpp"
 #include "tape/contact/pair.hpp"
 
 namespace tape {

@@ -2,9 +2,10 @@
 #include <array>
 
 #include "tape/effects/effect.hpp"
-#include "tape/math/dihedral.hpp"
 
 namespace tape {
+struct Dihedral;
+
 enum class BendingLaw { hinge, shape_operator };
 constexpr auto enum_names(BendingLaw) { return std::array<std::string_view, 2>{"hinge", "shape_operator"}; }
 
@@ -37,62 +38,20 @@ struct Bending {
     const int(&v)[6] = elements[i].v;
     return {{v[0], v[1], v[2], v[3], v[4], v[5]}};
   }
-  TAPE_HD Real energy(const StateView& s, int i) const {
-    Real theta[3];
-    for (int k = 0; k < 3; ++k) theta[k] = free_edge(i, k) ? 0 : at_edge(s, i, k).angle;
-    return 0.5 * (theta[0] * moment(i, theta, 0) + theta[1] * moment(i, theta, 1) + theta[2] * moment(i, theta, 2));
-  }
-  TAPE_HD VecN<18> gradient(const StateView& s, int i) const {
-    const Angles a = angles(s, i);
-    return a.slope.transpose() * Vec3(moment(i, a.theta, 0), moment(i, a.theta, 1), moment(i, a.theta, 2));
-  }
+  TAPE_HD inline Real energy(const StateView& s, int i) const;
+  TAPE_HD inline VecN<18> gradient(const StateView& s, int i) const;
   /// J^T K J with J = d theta/dx, a sum of squares; `exact` adds the moments times the second derivatives of their angles.
-  TAPE_HD MatN<18, 18> hessian(const StateView& s, int i, HessianMode mode) const {
-    const Angles a = angles(s, i);
-    const Mat3 K = Eigen::Map<const Mat3>(&elements[i].K[0][0]);
-    MatN<18, 18> h = a.slope.transpose() * (K * a.slope);
-    if (mode == HessianMode::projected) return h;
-    for (int k = 0; k < 3; ++k) {
-      if (free_edge(i, k)) continue;
-      Vec3 x[4];
-      positions(s, i, k, x);
-      const MatN<12, 12> second = moment(i, a.theta, k) * dihedral_hessian(x);
-      for (int p = 0; p < 4; ++p)
-        for (int q = 0; q < 4; ++q) h.block<3, 3>(3 * corner(k, p), 3 * corner(k, q)) += second.block<3, 3>(3 * p, 3 * q);
-    }
-    return h;
-  }
+  TAPE_HD inline MatN<18, 18> hessian(const StateView& s, int i, HessianMode mode) const;
 
  private:
-  struct Angles {
-    Real theta[3];
-    MatN<3, 18> slope;
-  };
+  struct Angles;  // at the three edges, with their slope
   /// Place in the stencil of vertex p of the hinge at edge k: the edge's ends, then the two apexes.
   TAPE_HD static int corner(int k, int p) { return p == 0 ? (k + 1) % 3 : p == 1 ? (k + 2) % 3 : p == 2 ? k : k + 3; }
   TAPE_HD bool free_edge(int i, int k) const { return elements[i].v[3 + k] == elements[i].v[k]; }
-  TAPE_HD Real moment(int i, const Real (&theta)[3], int k) const {  // [N m]
-    const Real(&row)[3] = elements[i].K[k];
-    return row[0] * theta[0] + row[1] * theta[1] + row[2] * theta[2];
-  }
-  TAPE_HD void positions(const StateView& s, int i, int k, Vec3 (&x)[4]) const {
-    for (int p = 0; p < 4; ++p) x[p] = s.x[elements[i].v[corner(k, p)]];
-  }
-  TAPE_HD Dihedral at_edge(const StateView& s, int i, int k) const {
-    Vec3 x[4];
-    positions(s, i, k, x);
-    return dihedral(x);
-  }
-  TAPE_HD Angles angles(const StateView& s, int i) const {
-    Angles a{{0, 0, 0}, MatN<3, 18>::Zero()};
-    for (int k = 0; k < 3; ++k) {
-      if (free_edge(i, k)) continue;
-      const Dihedral d = at_edge(s, i, k);
-      a.theta[k] = d.angle;
-      for (int p = 0; p < 4; ++p) a.slope.block<1, 3>(k, 3 * corner(k, p)) = d.gradient[p].transpose();
-    }
-    return a;
-  }
+  TAPE_HD inline Real moment(int i, const Real (&theta)[3], int k) const;  ///< [N m]
+  TAPE_HD inline void positions(const StateView& s, int i, int k, Vec3 (&x)[4]) const;
+  TAPE_HD inline Dihedral at_edge(const StateView& s, int i, int k) const;
+  TAPE_HD inline Angles angles(const StateView& s, int i) const;
 };
 static_assert(Effect<Bending>);
 }  // namespace tape

@@ -39,15 +39,9 @@ struct BodyDrive {
     return {};
   }
   TAPE_HD Stencil<2> stencil(int i) const { return {{elements[i].block, elements[i].block + 1}}; }
-  TAPE_HD Real energy(const StateView& s, int i) const {
-    return elements[i].stiffness.energy(s.body[elements[i].body], s.body_target[elements[i].body]);
-  }
-  TAPE_HD VecN<6> gradient(const StateView& s, int i) const {
-    return elements[i].stiffness.gradient(s.body[elements[i].body], s.body_target[elements[i].body]);
-  }
-  TAPE_HD MatN<6, 6> hessian(const StateView& s, int i, HessianMode mode) const {
-    return elements[i].stiffness.hessian(s.body[elements[i].body], s.body_target[elements[i].body], mode);
-  }
+  TAPE_HD inline Real energy(const StateView& s, int i) const;
+  TAPE_HD inline VecN<6> gradient(const StateView& s, int i) const;
+  TAPE_HD inline MatN<6, 6> hessian(const StateView& s, int i, HessianMode mode) const;
 };
 static_assert(Effect<BodyDrive>);
 }  // namespace tape

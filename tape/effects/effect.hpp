@@ -15,6 +15,9 @@ namespace tape {
 /// `elements`, a span that the step sets to memory of its side. Energies are in joules, before the factor dt^2 that assembly
 /// applies to all of them.
 ///
+/// Headers declare what kernels call (`TAPE_HD inline`); the definitions, which instantiate much of Eigen, stand in <effect>.inl and are
+/// included only where formulas are compiled (effects.inl). Declarations are all that the concepts below need.
+///
 /// Optional, found by `if constexpr (requires ...)`:
 ///   static constexpr bool on_blocks = true     the stencil names blocks of unknowns, not vertices: no relocation
 ///   bool lag(pair, s, Element& out)            elements are made at the start of each step, from the contact pairs for which this

@@ -43,53 +43,21 @@ struct Friction {
     std::vector<ContactPair> none;
     return {{}, p.eps_v, p.frame, Barrier::build(scene, assembly, {}, none)};
   }
-  TAPE_HD bool lag(const ContactPair& pair, const StateView& s, Element& out) const {
-    const Real mu = s.mu[pair.interface];
-    if (!(mu > 0)) return false;
-    if (far_apart(pair, s.x, pair.xi + pair.dhat)) return false;
-    const PairState p = PairState::at(pair, s.x);
-    if (!Barrier::reaches(p, pair) || p.fade.slope != 0) return false;
-    const Real force = barrier.normal_force(p, pair);
-    if (!(force > 0)) return false;
-    out = {LaggedSlip::at(pair, p, s.x), mu * force};
-    return true;
-  }
+  TAPE_HD inline bool lag(const ContactPair& pair, const StateView& s, Element& out) const;
   TAPE_HD Stencil<4> stencil(int i) const {
     const int(&v)[4] = elements[i].lagged.v;
     return {{v[0], v[1], v[2], v[3]}};
   }
-  TAPE_HD Vec2 slip(const StateView& s, int i) const { return elements[i].lagged.slip(frame, s); }
-  TAPE_HD Real energy(const StateView& s, int i) const { return elements[i].limit * law(s).value(slip(s, i).norm()); }
-  TAPE_HD VecN<12> gradient(const StateView& s, int i) const {
-    const Vec2 u = slip(s, i);
-    return elements[i].lagged.slope(frame, s) * (elements[i].limit * law(s).secant(u.norm()) * u);
-  }
+  TAPE_HD inline Vec2 slip(const StateView& s, int i) const;
+  TAPE_HD inline Real energy(const StateView& s, int i) const;
+  TAPE_HD inline VecN<12> gradient(const StateView& s, int i) const;
   /// In the slip positive semidefinite as it is: f0 is convex. But it is flat along a slip beyond eps and does not see that f0 turns at
   /// slip 0. Where Newton overshoots, the secant f0'(y)/y stands in for both directions: the parabola through y that lies above f0
   /// everywhere.
-  TAPE_HD MatN<12, 12> hessian(const StateView& s, int i, HessianMode mode) const {
-    const Element& e = elements[i];
-    const Vec2 u = slip(s, i);
-    const Real y = u.norm(), pull = law(s).secant(y);
-    Mat2 m = pull * Mat2::Identity();
-    if (!s.overshot && y > 0) m -= Mat2(u * u.transpose()) * (law(s).bend(y) / (y * y));
-    const MatN<12, 2> J = e.lagged.slope(frame, s);
-    MatN<12, 12> h = e.limit * J * m * J.transpose();
-    if (mode == HessianMode::exact && !s.overshot) e.lagged.add_curvature(frame, s, e.limit * pull * u, h);
-    return h;
-  }
+  TAPE_HD inline MatN<12, 12> hessian(const StateView& s, int i, HessianMode mode) const;
   /// Along the slip and across it.
   template <class F>
-  TAPE_HD bool squares(const StateView& s, int i, const F& add) const {
-    const Element& e = elements[i];
-    const Vec2 u = slip(s, i);
-    const Real y = u.norm(), pull = law(s).secant(y);
-    const MatN<12, 2> J = e.lagged.slope(frame, s);
-    const Vec2 along = y > 0 ? Vec2(u / y) : Vec2(1, 0);
-    add(e.limit * (pull - (s.overshot || !(y > 0) ? 0 : law(s).bend(y))), VecN<12>(J * along));
-    add(e.limit * pull, VecN<12>(J * Vec2(-along.y(), along.x())));
-    return true;
-  }
+  TAPE_HD inline bool squares(const StateView& s, int i, const F& add) const;
 
  private:
   TAPE_HD Coulomb law(const StateView& s) const { return {eps_v * s.dt}; }

@@ -21,9 +21,9 @@ struct Gravity {
     return {{}, scene.gravity};
   }
   TAPE_HD Stencil<1> stencil(int i) const { return {{elements[i].v}}; }
-  TAPE_HD Real energy(const StateView& s, int i) const { return -s.mass[elements[i].v] * g.dot(s.x[elements[i].v]); }
-  TAPE_HD Vec3 gradient(const StateView& s, int i) const { return -s.mass[elements[i].v] * g; }
-  TAPE_HD Mat3 hessian(const StateView&, int, HessianMode) const { return Mat3::Zero(); }
+  TAPE_HD inline Real energy(const StateView& s, int i) const;
+  TAPE_HD inline Vec3 gradient(const StateView& s, int i) const;
+  TAPE_HD inline Mat3 hessian(const StateView&, int, HessianMode) const;
 };
 static_assert(Effect<Gravity>);
 }  // namespace tape

@@ -21,11 +21,11 @@ struct Inertia {
     return {};
   }
   TAPE_HD Stencil<1> stencil(int i) const { return {{elements[i].v}}; }
-  TAPE_HD Vec3 offset(const StateView& s, int i) const { return s.x[elements[i].v] - s.x_tilde[elements[i].v]; }
-  TAPE_HD Real stiffness(const StateView& s, int i) const { return s.mass[elements[i].v] / (s.dt * s.dt); }
-  TAPE_HD Real energy(const StateView& s, int i) const { return 0.5 * stiffness(s, i) * offset(s, i).squaredNorm(); }
-  TAPE_HD Vec3 gradient(const StateView& s, int i) const { return stiffness(s, i) * offset(s, i); }
-  TAPE_HD Mat3 hessian(const StateView& s, int i, HessianMode) const { return stiffness(s, i) * Mat3::Identity(); }
+  TAPE_HD inline Vec3 offset(const StateView& s, int i) const;
+  TAPE_HD inline Real stiffness(const StateView& s, int i) const;
+  TAPE_HD inline Real energy(const StateView& s, int i) const;
+  TAPE_HD inline Vec3 gradient(const StateView& s, int i) const;
+  TAPE_HD inline Mat3 hessian(const StateView& s, int i, HessianMode) const;
 };
 static_assert(Effect<Inertia>);
 }  // namespace tape

@@ -1,5 +1,6 @@
 #pragma once
 #include "tape/core/functors.hpp"
+#include "tape/effects/effects.inl"
 #include "tape/solver/objective.hpp"
 
 namespace tape::TAPE_SIDE {

@@ -3,6 +3,8 @@
 #include <Eigen/LU>
 
 #include "tape/bodies/free_flight.hpp"
+#include "tape/effects/axle_torque.inl"
+#include "tape/effects/barrier.inl"
 #include "tape/math/rotation.hpp"
 
 namespace tape {

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <string>
 
-#include "tape/effects/effects.hpp"
+#include "tape/effects/effects.inl"
 #include "tests/support/effect_world.hpp"
 using namespace tape;
 using namespace tape::test;

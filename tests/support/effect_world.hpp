@@ -3,7 +3,7 @@
 #include <random>
 #include <vector>
 
-#include "tape/effects/effects.hpp"
+#include "tape/effects/effects.inl"
 #include "tape/math/rotation.hpp"
 
 namespace tape::test {

@@ -1,4 +1,4 @@
-#include "tape/effects/axle_torque.hpp"
+#include "tape/effects/axle_torque.inl"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "tape/effects/barrier.hpp"
+#include "tape/effects/barrier.inl"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "tape/effects/bending.hpp"
+#include "tape/effects/bending.inl"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "tape/effects/body_inertia.hpp"
+#include "tape/effects/body_inertia.inl"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include "tape/effects/body_drive.hpp"
+#include "tape/effects/body_drive.inl"
 #include "tests/support/derivatives.hpp"
 #include "tests/support/effect_world.hpp"
 using namespace tape;

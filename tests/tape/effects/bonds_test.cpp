@@ -1,4 +1,4 @@
-#include "tape/effects/bonds.hpp"
+#include "tape/effects/bonds.inl"
 
 #include <gtest/gtest.h>
 

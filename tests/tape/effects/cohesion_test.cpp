@@ -1,4 +1,4 @@
-#include "tape/effects/cohesion.hpp"
+#include "tape/effects/cohesion.inl"
 
 #include <gtest/gtest.h>
 

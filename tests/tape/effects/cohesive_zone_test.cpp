@@ -1,4 +1,4 @@
-#include "tape/effects/cohesive_zone.hpp"
+#include "tape/effects/cohesive_zone.inl"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "tape/effects/effects.hpp"
+#include "tape/effects/effects.inl"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "tape/effects/friction.hpp"
+#include "tape/effects/friction.inl"
 
 #include <gtest/gtest.h>
 

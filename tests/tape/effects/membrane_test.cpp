@@ -1,4 +1,4 @@
-#include "tape/effects/membrane.hpp"
+#include "tape/effects/membrane.inl"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "tape/effects/tether.hpp"
+#include "tape/effects/tether.inl"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,17 @@
+#pragma once
+/// The formulas of all effects, for what evaluates them. Everything else needs effects.hpp alone.
+#include "tape/effects/axle.inl"
+#include "tape/effects/axle_torque.inl"
+#include "tape/effects/barrier.inl"
+#include "tape/effects/bending.inl"
+#include "tape/effects/body_drive.inl"
+#include "tape/effects/body_inertia.inl"
+#include "tape/effects/bonds.inl"
+#include "tape/effects/cohesion.inl"
+#include "tape/effects/cohesive_zone.inl"
+#include "tape/effects/effects.hpp"
+#include "tape/effects/friction.inl"
+#include "tape/effects/gravity.inl"
+#include "tape/effects/inertia.inl"
+#include "tape/effects/membrane.inl"
+#include "tape/effects/tether.inl"
