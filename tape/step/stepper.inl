@@ -460,7 +460,7 @@ class SideStepper final : public Stepper {
 
   bool stops(Real moved, Real slope, Real rho) const {
     const NewtonParams& params = world_.setup.newton;
-    if (params.stop == StopRule::velocity) return moved < params.velocity_tol * dt_;
+    if (params.stop == StopRule::velocity || moving_mass_ == 0) return moved < params.velocity_tol * dt_;
     const Real lost = mode_ == HessianMode::projected ? (1 - rho) * (1 - rho) : 1;
     return -slope / lost <= moving_mass_ * params.velocity_tol * params.velocity_tol;
   }
