@@ -30,6 +30,7 @@ struct Surface {
   std::vector<Vec3> x;
   std::vector<tape::Index3> triangles;
   bool is_strip;
+  bool outside = false;  // a robot's or fixed: what these have of each other is Bullet's matter
   bool of_roll = false;  // its gaps are those of its layers: tests/tape/step/roll_gaps_test.cpp
   std::vector<tape::Vec2> rest = {};
 };
@@ -38,10 +39,11 @@ std::vector<Surface> surfaces(const tape::Scene& scene) {
   for (const tape::Strip& strip : scene.strips) {
     const tape::Film& film = scene.films[strip.film];
     const tape::StripMesh mesh = make_strip_mesh(strip.mesh, film.width, scene.seed);
-    all.push_back({strip.name, film.xi, place(mesh, strip), mesh.triangles, true, strip.winding.has_value(), mesh.rest});
+    all.push_back({strip.name, film.xi, place(mesh, strip), mesh.triangles, true, false, strip.winding.has_value(), mesh.rest});
   }
   for (const tape::Body& body : scene.bodies) {
     Surface s{body.name, body.xi, {}, body.mesh.triangles, false};
+    s.outside = !scene.articulations.empty() && (body.motion == tape::Motion::linked || body.motion == tape::Motion::fixed);
     for (const Vec3& v : body.mesh.vertices) s.x.push_back(apply(body.pose, v));
     all.push_back(std::move(s));
   }
@@ -84,7 +86,7 @@ TEST(ShippedScenes, StartWithGapsAboveHalfTheActivationDistance) {
     const std::vector<Surface> all = surfaces(scene);
     for (const Surface& a : all)
       for (const Surface& b : all)
-        if ((&a != &b || a.is_strip) && !(a.of_roll && b.of_roll)) {
+        if ((&a != &b || a.is_strip) && !(a.of_roll && b.of_roll) && !(a.outside && b.outside)) {
           EXPECT_GE(distance(a, b, 0.02) - a.xi - b.xi, 0.5 * scene.dhat()) << path.filename() << ": " << a.name << " and " << b.name;
         }
   }
