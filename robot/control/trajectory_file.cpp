@@ -1,13 +1,13 @@
 #include "robot/control/trajectory_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
 #include <numbers>
 #include <string_view>
-
-#include "robot/model/message.hpp"
 
 namespace robot {
 namespace {
@@ -45,7 +45,8 @@ class TrajectoryReader {
     if (!next_line()) throw InputError(file_.string() + ": is empty (allowed: a header and at least two rows)");
     read_header();
     while (next_line()) read_row();
-    if (result_.times.size() < 2) throw InputError(message(file_.string(), ": has ", result_.times.size(), " rows (allowed: at least 2)"));
+    if (result_.times.size() < 2)
+      throw InputError(fmt::format("{}: has {} rows (allowed: at least 2)", file_.string(), result_.times.size()));
     return std::move(result_);
   }
 
@@ -59,9 +60,11 @@ class TrajectoryReader {
     }
     return false;
   }
-  [[noreturn]] void fail(const std::string& reason) const { throw InputError(message(file_.string(), ":", line_number_, ": ", reason)); }
+  [[noreturn]] void fail(const std::string& reason) const {
+    throw InputError(fmt::format("{}:{}: {}", file_.string(), line_number_, reason));
+  }
   [[noreturn]] void fail(std::size_t column, std::string_view name, const std::string& reason) const {
-    fail(message("column ", column + 1, " (", name, "): ", reason));
+    fail(fmt::format("column {} ({}): {}", column + 1, name, reason));
   }
 
   void read_header() {
@@ -85,14 +88,14 @@ class TrajectoryReader {
     const Joint& of_model = model_.joints[k];
     const bool slides = of_model.type == JointType::prismatic;
     if (slides ? unit != "m" : unit != "rad" && unit != "deg")
-      fail(c, cell, message("unit ", unit, " (allowed: ", slides ? "m" : "rad, deg", ")"));
+      fail(c, cell, fmt::format("unit {} (allowed: {})", unit, slides ? "m" : "rad, deg"));
     return {name, static_cast<std::size_t>(joint - result_.joints.begin()), unit == "deg" ? std::numbers::pi / 180 : 1, of_model.lower,
             of_model.upper};
   }
 
   void read_row() {
     const std::vector<std::string_view> cells = cells_of(line_);
-    if (cells.size() != columns_.size() + 1) fail(message("has ", cells.size(), " columns, the header ", columns_.size() + 1));
+    if (cells.size() != columns_.size() + 1) fail(fmt::format("has {} columns, the header {}", cells.size(), columns_.size() + 1));
     const Real t = number(0, "time_s", cells[0]);
     require_next(t);
     VecX q(result_.joints.size());
@@ -101,7 +104,7 @@ class TrajectoryReader {
       const Real value = column.unit * number(c, column.name, cells[c]);
       if (value < column.lower - options_.slack || value > column.upper + options_.slack)
         fail(c, column.name,
-             message(cells[c], " is beyond the joint's limits (allowed: ", column.lower, " to ", column.upper, " rad or m)"));
+             fmt::format("{} is beyond the joint's limits (allowed: {:g} to {:g} rad or m)", cells[c], column.lower, column.upper));
       q[column.joint] = value;
     }
     result_.times.push_back(t);
@@ -112,15 +115,15 @@ class TrajectoryReader {
     Real value = 0;
     const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
     if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
-      fail(c, name, message(cell, " is no finite number"));
+      fail(c, name, fmt::format("{} is no finite number", cell));
     return value;
   }
   void require_next(Real t) const {
     if (result_.times.empty()) return;
     const Real before = result_.end();
-    if (t <= before) fail(0, "time_s", message(t, " s is not after ", before, " s"));
+    if (t <= before) fail(0, "time_s", fmt::format("{:g} s is not after {:g} s", t, before));
     if (t - before > options_.max_gap * (1 + 1e-9))
-      fail(0, "time_s", message("a gap of ", t - before, " s before ", t, " s (allowed: up to ", options_.max_gap, " s)"));
+      fail(0, "time_s", fmt::format("a gap of {:g} s before {:g} s (allowed: up to {:g} s)", t - before, t, options_.max_gap));
   }
 
   std::filesystem::path file_;

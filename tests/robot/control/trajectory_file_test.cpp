@@ -5,7 +5,7 @@
 
 #include <numbers>
 
-#include "tests/robot/control/files.hpp"
+#include "tests/robot/support/folder.hpp"
 using namespace robot;
 using testing::EndsWith;
 using testing::HasSubstr;
@@ -21,7 +21,7 @@ RobotModel crane() {
                   {.name = "slide", .type = JointType::prismatic, .parent = 2}};
   return model;
 }
-JointTrajectory read(const std::string& text) { return read_trajectory(test::written(text), crane(), {"swing", "slide"}); }
+JointTrajectory read(const std::string& text) { return read_trajectory(test::TextFile(text), crane(), {"swing", "slide"}); }
 }  // namespace
 
 TEST(TrajectoryFile, ColumnsComeInTheOrderAskedForAndInRadiansAndMetres) {

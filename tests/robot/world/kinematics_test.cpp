@@ -108,7 +108,7 @@ TEST(Kinematics, WhatCannotBeSimulatedIsRefusedByName) {
   };
   RobotModel model = tree();
   model.links[2].inertial.mass = 0;
-  refused(model, {}, "link2: mass 0");
+  refused(model, {}, "link2: mass = 0");
   model = tree();
   model.links[3].inertial.inertia(0, 0) = -1;
   refused(model, {}, "link3: its inertia");

@@ -1,4 +1,4 @@
-#include "robot/urdf/convex_hull.hpp"
+#include "robot/model/convex_hull.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "robot/model/inertia.hpp"
 #include "robot/model/primitives.hpp"
-#include "tests/robot/urdf/robot_file.hpp"
+#include "tests/robot/support/folder.hpp"
 using namespace robot;
 using namespace robot::test;
 
