@@ -119,8 +119,8 @@ TEST(Kinematics, WhatCannotBeSimulatedIsRefusedByName) {
   model.joints[1].axis *= 2;
   refused(model, {}, "joint1: its axis");
   refused(tree(), {.drives = {{.kp = 1}}}, "1 drive gains for 5 joints");
-  refused(tree(), {.drives = std::vector<DriveGains>(5, {.kp = -1})}, "joint0: kp -1");
-  refused(tree(), {.friction = -1}, "friction -1");
+  refused(tree(), {.drives = std::vector<DriveGains>(5, {.kp = -1})}, "joint0: kp = -1");
+  refused(tree(), {.friction = -1}, "friction = -1");
   EXPECT_THROW(World({.substep = 0}), InputError);
   World world;
   world.add_robot(kTree);
