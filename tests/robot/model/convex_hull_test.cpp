@@ -88,6 +88,16 @@ TEST(ConvexHull, OfFlatOrTooFewOrInfinitePointsIsRefused) {
   EXPECT_THROW(convex_hull({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, std::nan("")}}), InputError);
 }
 
+TEST(ConvexHull, AShrunkHullHasItsFacesInsideByTheDistanceOrATenthOfTheInnerRadius) {
+  for (const auto& [size, by] : {std::pair(Vec3(0.2, 0.3, 0.4), 1e-3), {Vec3(0.2, 0.3, 2e-3), 1e-4}}) {  // inner radius 0.1 m, 1 mm
+    const ShrunkHull hull = shrunk_hull(box_points(size), 1e-3);
+    EXPECT_NEAR(hull.by, by, 1e-9);
+    EXPECT_EQ(hull.vertices.size(), 8u);
+    for (const Vec3& p : hull.vertices) EXPECT_LT((p.cwiseAbs() - size / 2 + Vec3::Constant(by)).norm(), 1e-6);
+  }
+  EXPECT_THROW(shrunk_hull({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, 1e-3), InputError);
+}
+
 TEST(ConvexHull, TheCacheGivesTheSameHullAgainWithoutComputing) {
   const Folder folder;
   const fs::path cache = folder.path() / "made" / "here";

@@ -26,7 +26,8 @@ inline std::vector<JointCommand> hold(const VecX& q) {
   for (const Real position : q) commands.push_back({.kind = JointCommand::Kind::position, .position = position});
   return commands;
 }
-/// The joints of a trajectory are to be where it is at a time; the others stay at their commands.
+/// The joints of a trajectory are to be at a point of it at the end of the next step; the others stay at their commands. As a substep moves
+/// by its last velocity, the velocity that goes with it is that of the step's middle.
 inline void command(std::vector<JointCommand>& commands, const std::vector<int>& joints, const JointTrajectory::Point& point) {
   for (std::size_t j = 0; j < joints.size(); ++j) {
     const auto k = static_cast<Eigen::Index>(j);
