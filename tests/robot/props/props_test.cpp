@@ -62,7 +62,7 @@ TEST(Props, EachIsAUrdfWithoutAssumptionsAndWithInertiasOfRealBodies) {
   for (const char* name : kNames) {
     const RobotModel model = own_prop(name);
     EXPECT_EQ(model.name, name);
-    EXPECT_TRUE(model.notes.empty() || std::string(name) == "dispenser") << name << ": " << model.notes.front();
+    EXPECT_TRUE(model.notes.empty()) << name;
     for (const Link& link : model.links) {
       EXPECT_GT(link.inertial.mass, 0) << link.name;
       const Vec3 moments = principal_moments(link.inertial.inertia);
