@@ -1,5 +1,7 @@
 #include "robot/control/drives.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -7,11 +9,10 @@
 namespace robot {
 namespace {
 void require_count(const std::string& robot, const char* what, std::size_t given, std::size_t joints) {
-  if (given != joints)
-    throw InputError("robot " + robot + ": " + std::to_string(given) + " " + what + " for " + std::to_string(joints) + " joints");
+  if (given != joints) throw InputError(fmt::format("robot {}: {} {} for {} joints", robot, given, what, joints));
 }
 void require(bool good, const std::string& robot, const std::string& joint, const char* what, Real value, const char* range) {
-  if (!good) throw InputError("robot " + robot + ", joint " + joint + ": " + what + " " + std::to_string(value) + " is not " + range);
+  if (!good) throw InputError(fmt::format("robot {}, joint {}: {} = {:g} (allowed: {})", robot, joint, what, value, range));
 }
 }  // namespace
 

@@ -1,5 +1,7 @@
 #include "robot/control/inverse_kinematics.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <algorithm>
@@ -8,7 +10,6 @@
 #include <random>
 
 #include "robot/kinematics/forward_kinematics.hpp"
-#include "robot/model/message.hpp"
 
 namespace robot {
 namespace {
@@ -191,8 +192,8 @@ class Solver {
 
 void require_size(const RobotModel& model, const VecX& q, const char* what) {
   if (q.size() != static_cast<Eigen::Index>(model.joints.size()))
-    throw InputError(message("robot ", model.name, ", inverse kinematics: ", what, " has ", q.size(), " joint positions for ",
-                             model.joints.size(), " joints"));
+    throw InputError(fmt::format("robot {}, inverse kinematics: {} has {} joint positions for {} joints", model.name, what, q.size(),
+                                 model.joints.size()));
 }
 }  // namespace
 

@@ -1,11 +1,12 @@
 #include "robot/control/line_move.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "robot/control/motion_profile.hpp"
 #include "robot/kinematics/forward_kinematics.hpp"
-#include "robot/model/message.hpp"
 
 namespace robot {
 namespace {
@@ -29,17 +30,18 @@ Real shortest_time(const Line& line, const FrameTarget& target, const LineLimits
 }
 
 void require_positive(Real value, const char* name) {
-  if (!(value > 0)) throw InputError(message("line move: ", name, " = ", value, " (allowed: > 0)"));
+  if (!(value > 0)) throw InputError(fmt::format("line move: {} = {:g} (allowed: > 0)", name, value));
 }
 
 /// Why a command cannot be followed; empty if it can.
 std::string reason(const RobotModel& model, const IkResult& found, const VecX& q_before, Real dt) {
-  if (!found.converged) return message("no joint positions nearer than ", found.position_error, " m and ", found.rotation_error, " rad");
+  if (!found.converged)
+    return fmt::format("no joint positions nearer than {:g} m and {:g} rad", found.position_error, found.rotation_error);
   for (std::size_t k = 0; k < model.joints.size(); ++k) {
     const Real speed = std::fabs(found.q[k] - q_before[k]) / dt;
     if (speed > model.joints[k].velocity * (1 + kRoundOff))
-      return message("joint ", model.joints[k].name, " would have to move at ", speed, " rad/s or m/s (allowed: ", model.joints[k].velocity,
-                     ")");
+      return fmt::format("joint {} would have to move at {:g} rad/s or m/s (allowed: {:g})", model.joints[k].name, speed,
+                         model.joints[k].velocity);
   }
   return {};
 }

@@ -1,11 +1,11 @@
 #include "robot/control/postures.hpp"
 
+#include <fmt/format.h>
+
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <cmath>
-
-#include "robot/model/message.hpp"
 
 namespace robot {
 namespace {
@@ -39,11 +39,11 @@ class PostureReader {
     } catch (const YAML::BadFile&) {
       throw InputError(result_.file + ": cannot be read");
     } catch (const YAML::Exception& e) {
-      throw InputError(message(result_.file, ":", e.mark.line + 1, ": not valid YAML: ", e.msg));
+      throw InputError(fmt::format("{}:{}: not valid YAML: {}", result_.file, e.mark.line + 1, e.msg));
     }
   }
   [[noreturn]] void fail(const YAML::Node& node, const std::string& key, const std::string& reason) const {
-    throw InputError(message(result_.file, ":", std::max(node.Mark().line, 0) + 1, ": ", key, ": ", reason));
+    throw InputError(fmt::format("{}:{}: {}: {}", result_.file, std::max(node.Mark().line, 0) + 1, key, reason));
   }
   void require_section(const YAML::Node& node, const std::string& key) const {
     if (!node.IsMap()) fail(node, key, "is no section of keys and values");
@@ -104,18 +104,18 @@ VecX HandPostures::angles(const RobotModel& model, const std::string& prefix, co
   if (found == postures.end()) {
     std::string known;
     for (const auto& [name, values] : postures) known += (known.empty() ? "" : ", ") + name;
-    throw InputError(message(file, ": there is no posture ", posture, " (allowed: ", known, ")"));
+    throw InputError(fmt::format("{}: there is no posture {} (allowed: {})", file, posture, known));
   }
   const std::vector<std::string> names = joints_of(prefix);
   VecX q(joints.size());
   for (std::size_t j = 0; j < names.size(); ++j) {
     const int k = model.find_joint(names[j]);
-    if (k < 0) throw InputError(message(file, ": posture ", posture, ": robot ", model.name, " has no joint ", names[j]));
+    if (k < 0) throw InputError(fmt::format("{}: posture {}: robot {} has no joint {}", file, posture, model.name, names[j]));
     const Joint& joint = model.joints[k];
     q[j] = angle_of(found->second[j], unit, joint);
     if (!std::isfinite(q[j]) || q[j] < joint.lower || q[j] > joint.upper)
-      throw InputError(message(file, ": posture ", posture, ", joint ", names[j], " = ", q[j], " rad (allowed: ", joint.lower, " to ",
-                               joint.upper, " rad, finite)"));
+      throw InputError(fmt::format("{}: posture {}, joint {} = {:g} rad (allowed: {:g} to {:g} rad, finite)", file, posture, names[j], q[j],
+                                   joint.lower, joint.upper));
   }
   return q;
 }

@@ -1,10 +1,11 @@
 #include "robot/control/trajectory.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "robot/control/motion_profile.hpp"
-#include "robot/model/message.hpp"
 
 namespace robot {
 namespace {
@@ -13,19 +14,19 @@ constexpr Real kRoundOff = 1e-9;  // relative: a time that is just long enough i
 void require_waypoints(const std::vector<std::string>& joints, const std::vector<VecX>& waypoints, const MotionLimits& limits) {
   const auto n = static_cast<Eigen::Index>(joints.size());
   if (limits.speed.size() != n || limits.acceleration.size() != n)
-    throw InputError(message("trajectory: limits of ", limits.speed.size(), " speeds and ", limits.acceleration.size(),
-                             " accelerations for ", n, " joints"));
+    throw InputError(fmt::format("trajectory: limits of {} speeds and {} accelerations for {} joints", limits.speed.size(),
+                                 limits.acceleration.size(), n));
   for (Eigen::Index j = 0; j < n; ++j)
     if (!(limits.speed[j] > 0 && limits.acceleration[j] > 0))
-      throw InputError(message("trajectory: joint ", joints[j], ": limits of speed ", limits.speed[j], " and acceleration ",
-                               limits.acceleration[j], " (allowed: > 0)"));
+      throw InputError(fmt::format("trajectory: joint {}: limits of speed {:g} and acceleration {:g} (allowed: > 0)", joints[j],
+                                   limits.speed[j], limits.acceleration[j]));
   if (waypoints.empty()) throw InputError("trajectory: no waypoint (allowed: at least one)");
   for (std::size_t k = 0; k < waypoints.size(); ++k) {
     if (waypoints[k].size() != n)
-      throw InputError(message("trajectory: waypoint ", k, " has ", waypoints[k].size(), " positions for ", n, " joints"));
+      throw InputError(fmt::format("trajectory: waypoint {} has {} positions for {} joints", k, waypoints[k].size(), n));
     for (Eigen::Index j = 0; j < n; ++j)
       if (!std::isfinite(waypoints[k][j]))
-        throw InputError(message("trajectory: waypoint ", k, ", joint ", joints[j], " = ", waypoints[k][j], " is no number"));
+        throw InputError(fmt::format("trajectory: waypoint {}, joint {} = {:g} is no number", k, joints[j], waypoints[k][j]));
   }
 }
 
@@ -49,8 +50,8 @@ JointTrajectory::Point JointTrajectory::at(Real t) const {
 }
 
 MotionLimits motion_limits(const RobotModel& model, const std::vector<std::string>& joints, Real fraction, Real acceleration) {
-  if (!(fraction > 0 && fraction <= 1)) throw InputError(message("trajectory: fraction of speed = ", fraction, " (allowed: 0 to 1)"));
-  if (!(acceleration > 0)) throw InputError(message("trajectory: acceleration = ", acceleration, " (allowed: > 0)"));
+  if (!(fraction > 0 && fraction <= 1)) throw InputError(fmt::format("trajectory: fraction of speed = {:g} (allowed: 0 to 1)", fraction));
+  if (!(acceleration > 0)) throw InputError(fmt::format("trajectory: acceleration = {:g} (allowed: > 0)", acceleration));
   MotionLimits limits{VecX(joints.size()), VecX::Constant(joints.size(), acceleration)};
   for (std::size_t j = 0; j < joints.size(); ++j) {
     const int k = model.find_joint(joints[j]);
@@ -76,25 +77,26 @@ JointTrajectory trajectory_at(const std::vector<std::string>& joints, const std:
                               const MotionLimits& limits) {
   require_waypoints(joints, waypoints, limits);
   if (times.size() != waypoints.size())
-    throw InputError(message("trajectory: ", times.size(), " times for ", waypoints.size(), " waypoints"));
+    throw InputError(fmt::format("trajectory: {} times for {} waypoints", times.size(), waypoints.size()));
   for (std::size_t k = 0; k + 1 < times.size(); ++k) {
     const Real time = times[k + 1] - times[k];
-    if (!(time > 0)) throw InputError(message("trajectory: waypoint ", k + 1, ": time ", times[k + 1], " s is not after ", times[k], " s"));
+    if (!(time > 0))
+      throw InputError(fmt::format("trajectory: waypoint {}: time {:g} s is not after {:g} s", k + 1, times[k + 1], times[k]));
     const VecX move = (waypoints[k + 1] - waypoints[k]).cwiseAbs();
     for (Eigen::Index j = 0; j < move.size(); ++j) {
       const Real needed = MotionProfile::shortest_time(move[j], limits.speed[j], limits.acceleration[j]);
       if (needed > time * (1 + kRoundOff))
-        throw InputError(message("trajectory: waypoint ", k + 1, ", joint ", joints[j], ": peak speed ",
-                                 MotionProfile::peak_speed(move[j], time), " and acceleration ",
-                                 MotionProfile::peak_acceleration(move[j], time), " (allowed: ", limits.speed[j], " and ",
-                                 limits.acceleration[j], "); in ", time, " s, needs ", needed, " s"));
+        throw InputError(fmt::format(
+            "trajectory: waypoint {}, joint {}: peak speed {:g} and acceleration {:g} (allowed: {:g} and {:g}); in {:g} s, needs {:g} s",
+            k + 1, joints[j], MotionProfile::peak_speed(move[j], time), MotionProfile::peak_acceleration(move[j], time), limits.speed[j],
+            limits.acceleration[j], time, needed));
     }
   }
   return {joints, times, waypoints};
 }
 
 std::vector<VecX> sample(const JointTrajectory& trajectory, Real rate) {
-  if (!(rate > 0)) throw InputError(message("trajectory: rate = ", rate, " 1/s (allowed: > 0)"));
+  if (!(rate > 0)) throw InputError(fmt::format("trajectory: rate = {:g} 1/s (allowed: > 0)", rate));
   const Real ticks = (trajectory.end() - trajectory.start()) * rate;
   const auto whole = static_cast<long>(std::ceil(ticks * (1 - kRoundOff)));
   std::vector<VecX> q;

@@ -1,21 +1,14 @@
 #include "robot/control/trajectory_file.hpp"
 
-#include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <fstream>
-#include <numbers>
-#include <string_view>
+#include <fmt/format.h>
 
-#include "robot/model/message.hpp"
+#include <algorithm>
+#include <numbers>
+
+#include "robot/control/motion_file.hpp"
 
 namespace robot {
 namespace {
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlanks = " \t\r";
-  const auto first = text.find_first_not_of(kBlanks);
-  return first == text.npos ? std::string_view() : text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
-}
 std::vector<std::string_view> cells_of(std::string_view line) {
   std::vector<std::string_view> cells;
   for (std::size_t begin = 0, end = 0; end != line.npos; begin = end + 1) {
@@ -24,118 +17,92 @@ std::vector<std::string_view> cells_of(std::string_view line) {
   }
   return cells;
 }
+std::string place(std::size_t cell, std::string_view name) { return fmt::format("column {} ({})", cell + 1, name); }
 
-/// One column after the time.
+/// Where the position of a joint stands, and in which unit: q = scale * value + offset.
 struct Column {
   std::string name;   ///< as the header has it
+  std::size_t cell;   ///< of the line
   std::size_t joint;  ///< of the joints asked for
-  Real unit;          ///< [rad or m]
-  Real lower, upper;  ///< [rad or m]
+  Real scale, offset;
 };
 
-class TrajectoryReader {
- public:
-  TrajectoryReader(const std::filesystem::path& file, const RobotModel& model, const std::vector<std::string>& joints,
-                   const TrajectoryFileOptions& options)
-      : file_(file), model_(model), options_(options), text_(file), result_{joints, {}, {}, JointTrajectory::Between::linear} {
-    if (!text_) throw InputError(file.string() + ": cannot be read");
-  }
-
-  JointTrajectory read() {
-    if (!next_line()) throw InputError(file_.string() + ": is empty (allowed: a header and at least two rows)");
-    read_header();
-    while (next_line()) read_row();
-    if (result_.times.size() < 2) throw InputError(message(file_.string(), ": has ", result_.times.size(), " rows (allowed: at least 2)"));
-    return std::move(result_);
-  }
-
- private:
-  /// The next line that says something.
-  bool next_line() {
-    while (std::getline(text_, line_)) {
-      ++line_number_;
-      const std::string_view line = trimmed(line_);
-      if (!line.empty() && line.front() != '#') return true;
-    }
-    return false;
-  }
-  [[noreturn]] void fail(const std::string& reason) const { throw InputError(message(file_.string(), ":", line_number_, ": ", reason)); }
-  [[noreturn]] void fail(std::size_t column, std::string_view name, const std::string& reason) const {
-    fail(message("column ", column + 1, " (", name, "): ", reason));
-  }
-
-  void read_header() {
-    const std::vector<std::string_view> cells = cells_of(line_);
-    if (cells.front() != "time_s") fail(0, cells.front(), "the first column is the time (allowed: time_s)");
-    for (std::size_t c = 1; c < cells.size(); ++c) columns_.push_back(column_of(c, cells[c]));
-    for (std::size_t j = 0; j < result_.joints.size(); ++j)
-      if (std::none_of(columns_.begin(), columns_.end(), [j](const Column& column) { return column.joint == j; }))
-        fail("joint " + result_.joints[j] + " is missing");
-  }
-  Column column_of(std::size_t c, std::string_view cell) const {
-    const auto open = cell.rfind('[');
-    if (open == cell.npos || cell.back() != ']') fail(c, cell, "has no unit (allowed: name [rad], name [deg], name [m])");
-    const std::string name(trimmed(cell.substr(0, open)));
-    const std::string_view unit = trimmed(cell.substr(open + 1, cell.size() - open - 2));
-    const auto joint = std::find(result_.joints.begin(), result_.joints.end(), name);
-    const int k = model_.find_joint(name);
-    if (joint == result_.joints.end() || k < 0) fail(c, cell, "is no joint that this motion has");
-    if (std::any_of(columns_.begin(), columns_.end(), [&](const Column& other) { return other.name == name; }))
-      fail(c, cell, "is there twice");
-    const Joint& of_model = model_.joints[k];
-    const bool slides = of_model.type == JointType::prismatic;
-    if (slides ? unit != "m" : unit != "rad" && unit != "deg")
-      fail(c, cell, message("unit ", unit, " (allowed: ", slides ? "m" : "rad, deg", ")"));
-    return {name, static_cast<std::size_t>(joint - result_.joints.begin()), unit == "deg" ? std::numbers::pi / 180 : 1, of_model.lower,
-            of_model.upper};
-  }
-
-  void read_row() {
-    const std::vector<std::string_view> cells = cells_of(line_);
-    if (cells.size() != columns_.size() + 1) fail(message("has ", cells.size(), " columns, the header ", columns_.size() + 1));
-    const Real t = number(0, "time_s", cells[0]);
-    require_next(t);
-    VecX q(result_.joints.size());
-    for (std::size_t c = 1; c < cells.size(); ++c) {
-      const Column& column = columns_[c - 1];
-      const Real value = column.unit * number(c, column.name, cells[c]);
-      if (value < column.lower - options_.slack || value > column.upper + options_.slack)
-        fail(c, column.name,
-             message(cells[c], " is beyond the joint's limits (allowed: ", column.lower, " to ", column.upper, " rad or m)"));
-      q[column.joint] = value;
-    }
-    result_.times.push_back(t);
-    result_.knots.push_back(q);
-  }
-  Real number(std::size_t c, std::string_view name, std::string_view cell) const {
-    if (cell.empty()) fail(c, name, "is empty");
-    Real value = 0;
-    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-    if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
-      fail(c, name, message(cell, " is no finite number"));
-    return value;
-  }
-  void require_next(Real t) const {
-    if (result_.times.empty()) return;
-    const Real before = result_.end();
-    if (t <= before) fail(0, "time_s", message(t, " s is not after ", before, " s"));
-    if (t - before > options_.max_gap * (1 + 1e-9))
-      fail(0, "time_s", message("a gap of ", t - before, " s before ", t, " s (allowed: up to ", options_.max_gap, " s)"));
-  }
-
-  std::filesystem::path file_;
-  const RobotModel& model_;
-  TrajectoryFileOptions options_;
-  std::ifstream text_;
-  std::string line_;
-  int line_number_ = 0;
-  std::vector<Column> columns_;
-  JointTrajectory result_;
+/// The columns of a file, after its header has been read.
+struct Table {
+  std::size_t cells;  ///< of each line
+  std::string time;   ///< name of its column
+  std::size_t time_cell;
+  std::vector<Column> columns;
 };
+
+JointTrajectory read_rows(MotionFile& file, const Table& table) {
+  while (file.next_line()) {
+    const std::vector<std::string_view> cells = cells_of(file.line());
+    if (cells.size() != table.cells) file.fail(fmt::format("has {} columns, the header {}", cells.size(), table.cells));
+    const std::string time = place(table.time_cell, table.time);
+    const Real t = file.number(time, cells[table.time_cell]);
+    VecX q(file.names().size());
+    for (const Column& column : table.columns) {
+      const std::string where = place(column.cell, column.name);
+      q[column.joint] = column.scale * file.number(where, cells[column.cell]) + column.offset;
+      file.require_within(where, q[column.joint], column.joint);
+    }
+    file.add(time, t, q);
+  }
+  return file.finish();
+}
+
+void read_header_line(MotionFile& file, const std::filesystem::path& name) {
+  if (!file.next_line()) throw InputError(name.string() + ": is empty (allowed: a header and at least two rows)");
+}
+
+/// Of a header's cell: name [unit].
+Column column_of(const MotionFile& file, std::size_t c, std::string_view cell, const std::vector<Column>& before) {
+  const auto fail = [&](const std::string& reason) { file.fail(place(c, cell) + ": " + reason); };
+  const auto open = cell.rfind('[');
+  if (open == cell.npos || cell.back() != ']') fail("has no unit (allowed: name [rad], name [deg], name [m])");
+  const std::string name(trimmed(cell.substr(0, open)));
+  const std::string_view unit = trimmed(cell.substr(open + 1, cell.size() - open - 2));
+  const auto joint = std::find(file.names().begin(), file.names().end(), name);
+  if (joint == file.names().end()) fail("is no joint that this motion has");
+  if (std::any_of(before.begin(), before.end(), [&](const Column& other) { return other.name == name; })) fail("is there twice");
+  const auto j = static_cast<std::size_t>(joint - file.names().begin());
+  const bool slides = file.joint(j).type == JointType::prismatic;
+  if (slides ? unit != "m" : unit != "rad" && unit != "deg") fail(fmt::format("unit {} (allowed: {})", unit, slides ? "m" : "rad, deg"));
+  return {name, c, j, unit == "deg" ? std::numbers::pi / 180 : 1, 0};
+}
 }  // namespace
 
 JointTrajectory read_trajectory(const std::filesystem::path& file, const RobotModel& model, const std::vector<std::string>& joints,
                                 const TrajectoryFileOptions& options) {
-  return TrajectoryReader(file, model, joints, options).read();
+  MotionFile motion(file, model, joints, options);
+  read_header_line(motion, file);
+  const std::vector<std::string_view> cells = cells_of(motion.line());
+  if (cells.front() != "time_s") motion.fail(place(0, cells.front()) + ": the first column is the time (allowed: time_s)");
+  Table table{cells.size(), "time_s", 0, {}};
+  for (std::size_t c = 1; c < cells.size(); ++c) table.columns.push_back(column_of(motion, c, cells[c], table.columns));
+  for (std::size_t j = 0; j < joints.size(); ++j)
+    if (std::none_of(table.columns.begin(), table.columns.end(), [j](const Column& column) { return column.joint == j; }))
+      motion.fail("joint " + joints[j] + " is missing");
+  return read_rows(motion, table);
+}
+
+JointTrajectory read_table(const std::filesystem::path& file, const RobotModel& model, const std::string& time,
+                           const std::vector<DrivenByColumn>& joints, const TrajectoryFileOptions& options) {
+  std::vector<std::string> names;
+  for (const DrivenByColumn& driven : joints) names.push_back(driven.joint);
+  MotionFile motion(file, model, names, options);
+  read_header_line(motion, file);
+  const std::vector<std::string_view> cells = cells_of(motion.line());
+  const auto cell_of = [&](const std::string& name) {
+    const auto found = std::find(cells.begin(), cells.end(), name);
+    if (found == cells.end()) motion.fail("column " + name + " is missing");
+    if (std::find(found + 1, cells.end(), name) != cells.end()) motion.fail("column " + name + " is there twice");
+    return static_cast<std::size_t>(found - cells.begin());
+  };
+  Table table{cells.size(), time, cell_of(time), {}};
+  for (std::size_t j = 0; j < joints.size(); ++j)
+    table.columns.push_back({joints[j].column, cell_of(joints[j].column), j, joints[j].scale, joints[j].offset});
+  return read_rows(motion, table);
 }
 }  // namespace robot

@@ -4,7 +4,7 @@
 #include "robot/control/trajectory.hpp"
 
 namespace robot {
-/// What a trajectory file may hold.
+/// What a file of joint positions may hold.
 struct TrajectoryFileOptions {
   Real max_gap = 0.1;  ///< [s] between two rows
   Real slack = 0.02;   ///< [rad or m] beyond a joint's limits: recorded motion is noisy
@@ -19,4 +19,18 @@ struct TrajectoryFileOptions {
 ///         time that does not increase or has a gap, a position beyond the joint's limits, less than two rows
 JointTrajectory read_trajectory(const std::filesystem::path& file, const RobotModel& model, const std::vector<std::string>& joints,
                                 const TrajectoryFileOptions& options = {});
+
+/// A joint that a column of somebody else's file drives: q = scale * value + offset.
+struct DrivenByColumn {
+  std::string joint;   ///< of the model
+  std::string column;  ///< as the file's header has it
+  Real scale = 1;      ///< [rad or m per unit of the column] with the sign of the joint's axis against the other's
+  Real offset = 0;     ///< [rad or m]
+};
+
+/// The same from a comma-separated file with a header of plain names, recorded on another robot. Columns that drive no joint are not read.
+/// @param time  name of the column of times [s]
+/// @throws InputError with file, line and column, as read_trajectory
+JointTrajectory read_table(const std::filesystem::path& file, const RobotModel& model, const std::string& time,
+                           const std::vector<DrivenByColumn>& joints, const TrajectoryFileOptions& options = {});
 }  // namespace robot

@@ -1,5 +1,7 @@
 #include "robot/kinematics/forward_kinematics.hpp"
 
+#include <fmt/format.h>
+
 namespace robot {
 namespace {
 Pose joint_motion(const Joint& joint, Real q) {
@@ -10,8 +12,7 @@ Pose joint_motion(const Joint& joint, Real q) {
 
 std::vector<Pose> link_poses(const RobotModel& model, const VecX& q, const Pose& X_WB) {
   if (q.size() != static_cast<Eigen::Index>(model.joints.size()))
-    throw InputError("robot " + model.name + ": " + std::to_string(q.size()) + " joint positions for its " +
-                     std::to_string(model.joints.size()) + " joints");
+    throw InputError(fmt::format("robot {}: {} joint positions for its {} joints", model.name, q.size(), model.joints.size()));
   std::vector<Pose> X_WL{X_WB};
   X_WL.reserve(model.links.size());
   for (std::size_t k = 0; k < model.joints.size(); ++k) {

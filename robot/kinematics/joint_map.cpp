@@ -13,6 +13,8 @@ struct Follow {
 Follow resolve(const RobotModel& model, int k) {
   Follow follow{k, 1, 0};
   for (std::size_t steps = 0; const auto& mimic = model.joints[follow.leader].mimic; ++steps) {
+    if (mimic->joint < 0 || mimic->joint >= static_cast<int>(model.joints.size()))
+      throw InputError("robot " + model.name + ", joint " + model.joints[k].name + ": the joint that it mimics is none of the robot's");
     if (steps == model.joints.size())
       throw InputError("robot " + model.name + ", joint " + model.joints[k].name + ": follows itself through mimic");
     follow.offset += follow.multiplier * mimic->offset;

@@ -15,6 +15,7 @@ struct JointMap {
   VecX independent_of(const VecX& q) const { return q(independent); }
 };
 
-/// @throws InputError naming the joint if joints follow each other in a circle, or if limits leave no position to a joint
+/// @throws InputError naming the joint if it follows none of the model's, if joints follow each other in a circle, or if limits leave no
+/// position to a joint
 JointMap joint_map(const RobotModel& model);
 }  // namespace robot

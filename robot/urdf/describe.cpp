@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robot/kinematics/forward_kinematics.hpp"
+#include "robot/kinematics/joint_map.hpp"
 #include "robot/model/inertia.hpp"
 
 namespace robot {
@@ -33,16 +35,6 @@ std::string name_of(Shape::Kind kind, std::size_t count) {
       break;
   }
   return count == 1 ? "mesh" : "meshes";
-}
-
-/// The joint's own motion, of the child's frame.
-Pose motion(const Joint& joint, Real q) {
-  Pose X = Pose::Identity();
-  if (joint.type == JointType::prismatic)
-    X.translation() = q * joint.axis;
-  else
-    X.linear() = Eigen::AngleAxisd(q, joint.axis).toRotationMatrix();
-  return X;
 }
 
 Real travel(const Joint& joint) { return joint.type == JointType::prismatic ? std::max(-joint.lower, joint.upper) : 0; }
@@ -107,7 +99,7 @@ void add_tree(const RobotModel& robot, int link, const std::string& indent, std:
 
 Reach reach(const RobotModel& robot) {
   Reach reach{.at_zero = 0, .farthest = robot.links.front().name, .bound = 0, .longest_path = robot.links.front().name};
-  std::vector<Pose> X_BL(robot.links.size(), Pose::Identity());
+  const std::vector<Pose> X_BL = link_poses(robot, joint_map(robot).offset);
   std::vector<Real> path(robot.links.size(), 0);
   const auto look = [&](const std::string& name, Real distance, Real bound) {
     if (distance > reach.at_zero) reach.at_zero = distance, reach.farthest = name;
@@ -115,14 +107,11 @@ Reach reach(const RobotModel& robot) {
   };
   for (std::size_t j = 0; j < robot.joints.size(); ++j) {
     const Joint& joint = robot.joints[j];
-    const auto parent = static_cast<std::size_t>(joint.parent);
-    X_BL[j + 1] = X_BL[parent] * joint.X_PJ * motion(joint, joint.mimic ? joint.mimic->offset : 0);
-    path[j + 1] = path[parent] + joint.X_PJ.translation().norm() + travel(joint);
+    path[j + 1] = path[static_cast<std::size_t>(joint.parent)] + joint.X_PJ.translation().norm() + travel(joint);
     look(robot.links[j + 1].name, X_BL[j + 1].translation().norm(), path[j + 1]);
   }
   for (const Frame& f : robot.frames) {
-    const auto link = static_cast<std::size_t>(f.link);
-    look(f.name, (X_BL[link] * f.X_LF.translation()).norm(), path[link] + f.X_LF.translation().norm());
+    look(f.name, frame_pose(X_BL, f).translation().norm(), path[static_cast<std::size_t>(f.link)] + f.X_LF.translation().norm());
   }
   return reach;
 }

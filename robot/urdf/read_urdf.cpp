@@ -8,9 +8,9 @@
 #include <map>
 #include <set>
 
+#include "robot/model/convex_hull.hpp"
 #include "robot/model/inertia.hpp"
 #include "robot/model/primitives.hpp"
-#include "robot/urdf/convex_hull.hpp"
 #include "robot/urdf/mesh_file.hpp"
 #include "robot/urdf/mesh_uri.hpp"
 #include "robot/urdf/srdf.hpp"

@@ -1,7 +1,12 @@
 #include "robot/world/articulation.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 #include <cmath>
+
+#include "robot/kinematics/forward_kinematics.hpp"
+#include "robot/model/inertia.hpp"
 
 namespace robot {
 namespace {
@@ -25,9 +30,8 @@ void check(const RobotModel& model, bool fixed_base) {
     const Inertial& i = model.links[k].inertial;
     if (k == 0 && fixed_base) continue;
     if (!(i.mass > 0 && std::isfinite(i.mass)))
-      throw InputError("robot " + model.name + ", link " + model.links[k].name + ": mass " + std::to_string(i.mass) +
-                       " kg is not positive");
-    if (!(principal(i.inertia).second.minCoeff() > 0))
+      throw InputError(fmt::format("robot {}, link {}: mass = {:g} kg (allowed: > 0)", model.name, model.links[k].name, i.mass));
+    if (!(principal_moments(i.inertia).minCoeff() > 0))
       throw InputError("robot " + model.name + ", link " + model.links[k].name + ": its inertia is not positive definite");
   }
   for (std::size_t k = 0; k < model.joints.size(); ++k) {
@@ -172,11 +176,11 @@ Articulation::Vec6 Articulation::joint_motion(int k) const {
 }
 
 MatX Articulation::jacobian(int link, const Vec3& p) const {
-  MatX J = MatX::Zero(6, dof());
-  const Vec3 r = p - X_WL(0).translation();
-  if (!fixed_base_) J.leftCols<6>().setIdentity();
-  for (int k = link - 1; k >= 0; k = model_->joints[static_cast<std::size_t>(k)].parent - 1) J.col(base_dof() + k) = joint_motion(k);
-  J.topRows<3>() -= skew(r) * J.bottomRows<3>();  // from the base's origin to p
+  const MatX of_joints = robot::jacobian(*model_, X_WL_, link, p);
+  if (fixed_base_) return of_joints;
+  MatX J = MatX::Identity(6, dof());
+  J.block<3, 3>(0, 3) = -skew(p - X_WL(0).translation());
+  J.rightCols(joints()) = of_joints;
   return J;
 }
 

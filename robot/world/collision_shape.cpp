@@ -1,19 +1,20 @@
 #include "robot/world/collision_shape.hpp"
 
+#include "robot/model/convex_hull.hpp"
+
 namespace robot {
 namespace {
 std::unique_ptr<btCollisionShape> hull(const TriangleMesh& mesh, const std::string& link) {
-  constexpr Real kMostShrink = 0.1;  // of the hull's inner radius
-  if (mesh.vertices.size() < 4) throw InputError("link " + link + ": a collision mesh has fewer than four vertices");
-  btConvexHullComputer inner;
-  const int count = static_cast<int>(mesh.vertices.size());
-  const Real shift = inner.compute(mesh.vertices[0].data(), sizeof(Vec3), count, CollisionShape::kMargin, kMostShrink);
-  if (shift < 0 || inner.vertices.size() < 4) throw InputError("link " + link + ": a collision mesh has no volume");
-  auto shape = std::make_unique<btConvexHullShape>();
-  for (int i = 0; i < inner.vertices.size(); ++i) shape->addPoint(inner.vertices[i], false);
-  shape->setMargin(shift);
-  shape->recalcLocalAabb();
-  return shape;
+  try {
+    const ShrunkHull inner = shrunk_hull(mesh.vertices, CollisionShape::kMargin);
+    auto shape = std::make_unique<btConvexHullShape>();
+    for (const Vec3& p : inner.vertices) shape->addPoint(to_bullet(p), false);
+    shape->setMargin(inner.by);
+    shape->recalcLocalAabb();
+    return shape;
+  } catch (const InputError& e) {
+    throw InputError("link " + link + ", collision mesh: " + e.what());
+  }
 }
 
 std::unique_ptr<btCollisionShape> part(const Shape& shape, const std::string& link) {

@@ -8,28 +8,14 @@ DrivenRobot::DrivenRobot(int index, std::shared_ptr<const RobotModel> model, con
     : drive_impulse(VecX::Zero(static_cast<Eigen::Index>(model->joints.size()))),
       body_(index, model, params.X_WB, params.fixed_base),
       drives_(*model, params.drives),
+      joint_map_(joint_map(*model)),
       viscous_(body_.joints()) {
-  motions_ = MatX::Identity(body_.dof(), body_.dof());
-  std::vector<Eigen::Index> independent;
-  for (Eigen::Index k = 0; k < body_.base_dof(); ++k) independent.push_back(k);
-  for (Eigen::Index k = 0; k < body_.joints(); ++k) {
-    const Joint& joint = model->joints[static_cast<std::size_t>(k)];
-    const Eigen::Index row = body_.base_dof() + k;
-    viscous_[k] = joint.damping;
-    if (!joint.mimic) {
-      independent.push_back(row);
-      continue;
-    }
-    const int leader = joint.mimic->joint;
-    if (leader < 0 || leader >= body_.joints() || model->joints[static_cast<std::size_t>(leader)].mimic)
-      throw InputError("robot " + model->name + ", joint " + joint.name + ": it mimics no joint that moves by itself");
-    motions_(row, row) = 0;
-    motions_(row, body_.base_dof() + leader) = joint.mimic->multiplier;
-  }
-  motions_ = MatX(motions_(Eigen::all, independent));
+  for (Eigen::Index k = 0; k < body_.joints(); ++k) viscous_[k] = model->joints[static_cast<std::size_t>(k)].damping;
+  motions_ = MatX::Identity(body_.dof(), body_.base_dof() + joint_map_.map.cols());
+  motions_.bottomRightCorner(joint_map_.map.rows(), joint_map_.map.cols()) = joint_map_.map;
   body_.bullet().setUserPointer(this);
   add_constraints();
-  body_.set_q(follow(body_.q()));
+  body_.set_q(follow(VecX::Zero(body_.joints())));
   body_.refresh();
   for (int link = 0; link <= body_.joints(); ++link) set_friction(link, params.friction);
 }
@@ -50,18 +36,10 @@ MatX DrivenRobot::on_joints(const VecX& diagonal) const {
   return all.asDiagonal();
 }
 
-VecX DrivenRobot::follow(VecX q) const {
-  for (Eigen::Index k = 0; k < q.size(); ++k)
-    if (const auto& mimic = body_.model().joints[static_cast<std::size_t>(k)].mimic)
-      q[k] = mimic->multiplier * q[mimic->joint] + mimic->offset;
-  return q;
-}
-
-VecX DrivenRobot::follow_velocity(VecX v) const {
-  const Eigen::Index b = body_.base_dof();
-  for (Eigen::Index k = 0; k < body_.joints(); ++k)
-    if (const auto& mimic = body_.model().joints[static_cast<std::size_t>(k)].mimic) v[b + k] = mimic->multiplier * v[b + mimic->joint];
-  return v;
+VecX DrivenRobot::follow_velocity(const VecX& v) const {
+  VecX result = v;
+  result.tail(body_.joints()) = joint_map_.map * joint_map_.independent_of(v.tail(body_.joints()));
+  return result;
 }
 
 /// Bullet multiplies both links' coefficients.

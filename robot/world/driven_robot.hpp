@@ -1,5 +1,6 @@
 #pragma once
 #include "robot/control/drives.hpp"
+#include "robot/kinematics/joint_map.hpp"
 #include "robot/world/articulation.hpp"
 #include "robot/world/world.hpp"
 
@@ -16,8 +17,8 @@ class DrivenRobot {
   const std::vector<std::unique_ptr<btMultiBodyConstraint>>& constraints() const { return constraints_; }
 
   /// Joints that mimic follow exactly.
-  VecX follow(VecX q) const;
-  VecX follow_velocity(VecX v) const;
+  VecX follow(const VecX& q) const { return joint_map_.all(joint_map_.independent_of(q)); }
+  VecX follow_velocity(const VecX& v) const;
   void set_friction(int link, Real mu);
   /// [dof x k] motions that mimicking joints leave.
   const MatX& motions() const { return motions_; }
@@ -50,6 +51,7 @@ class DrivenRobot {
   MatX on_joints(const VecX& diagonal) const;
   Articulation body_;
   Drives drives_;
+  JointMap joint_map_;
   VecX viscous_;  // [nj]
   MatX motions_;
   std::vector<std::unique_ptr<btMultiBodyConstraint>> constraints_;

@@ -1,5 +1,7 @@
 #include "robot/world/world.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "robot/world/physics.hpp"
@@ -7,14 +9,14 @@
 namespace robot {
 namespace {
 void require(bool good, const std::string& what, Real value, const char* range) {
-  if (!good) throw InputError("world: " + what + " " + std::to_string(value) + " is not " + range);
+  if (!good) throw InputError(fmt::format("world: {} = {:g} (allowed: {})", what, value, range));
 }
 const WorldParams& checked(const WorldParams& p) {
   require(p.gravity.allFinite(), "gravity", p.gravity.norm(), "finite [m/s^2]");
-  require(p.substep > 0 && p.substep <= 0.1, "substep", p.substep, "in (0, 0.1] s");
+  require(p.substep > 0 && p.substep <= 0.1, "substep", p.substep, "(0, 0.1] s");
   require(p.iterations >= 1, "iterations", p.iterations, ">= 1");
-  require(p.contact_erp >= 0 && p.contact_erp <= 1, "contact_erp", p.contact_erp, "in [0, 1]");
-  require(p.limit_erp >= 0 && p.limit_erp <= 1, "limit_erp", p.limit_erp, "in [0, 1]");
+  require(p.contact_erp >= 0 && p.contact_erp <= 1, "contact_erp", p.contact_erp, "[0, 1]");
+  require(p.limit_erp >= 0 && p.limit_erp <= 1, "limit_erp", p.limit_erp, "[0, 1]");
   return p;
 }
 int substeps(Real dt, Real longest) {
@@ -111,7 +113,7 @@ void World::restore(const Snapshot& snapshot) {
   for (const auto& robot : impl_->physics.robots()) expected += robot->saved_size();
   const std::size_t size = snapshot.numbers.size();
   if (size < expected + 1 || size != expected + 1 + 4 * static_cast<std::size_t>(snapshot.numbers[expected]))
-    throw InputError("world: a snapshot of " + std::to_string(size) + " numbers is not one of these robots");
+    throw InputError(fmt::format("world: a snapshot of {} numbers is not one of these robots", size));
   const Real* n = snapshot.numbers.data();
   for (const auto& robot : impl_->physics.robots()) robot->restore(n);
   impl_->physics.apart.clear();

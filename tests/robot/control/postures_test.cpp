@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/robot/control/files.hpp"
+#include "tests/robot/support/folder.hpp"
 using namespace robot;
 using testing::EndsWith;
 using testing::HasSubstr;
@@ -51,20 +51,20 @@ TEST(Postures, ThoseOfTheHandFitEverySideAndNameAllTwentyJoints) {
 
 TEST(Postures, AFractionIsOfTheWayFromZeroToTheLimitOnItsSide) {
   const HandPostures postures =
-      read_postures(test::written("unit: fraction\npostures:\n  grip: {a: -0.5, b: 0.25}\n  flat: {b: 0, a: 1}\n"));
+      read_postures(test::TextFile("unit: fraction\npostures:\n  grip: {a: -0.5, b: 0.25}\n  flat: {b: 0, a: 1}\n"));
   EXPECT_EQ(postures.angles(two_joints(), "l_", "grip"), VecX(Eigen::Vector2d(-0.1, 0.5)));
   EXPECT_EQ(postures.angles(two_joints(), "l_", "flat"), VecX(Eigen::Vector2d(1, 0)));
 }
 
 TEST(Postures, WhereZeroIsBeyondALimitFractionsStartAtThatLimit) {
-  const HandPostures postures = read_postures(test::written("postures:\n  flat: {a: 0, b: 0.5}\n"));
+  const HandPostures postures = read_postures(test::TextFile("postures:\n  flat: {a: 0, b: 0.5}\n"));
   RobotModel model = two_joints();
   model.joints[0].lower = 0.05, model.joints[1].lower = 1;
   EXPECT_EQ(postures.angles(model, "l_", "flat"), VecX(Eigen::Vector2d(0.05, 1.5)));
 }
 
 TEST(Postures, AnglesInRadiansAreTakenAsTheyAre) {
-  const HandPostures postures = read_postures(test::written("postures:\n  grip: {a: -0.15, b: 1.75}\nunit: rad\n"));
+  const HandPostures postures = read_postures(test::TextFile("postures:\n  grip: {a: -0.15, b: 1.75}\nunit: rad\n"));
   EXPECT_EQ(postures.angles(two_joints(), "l_", "grip"), VecX(Eigen::Vector2d(-0.15, 1.75)));
 }
 
@@ -82,7 +82,7 @@ TEST(Postures, AMoveEndsInThePostureAtRestAfterItsDuration) {
 }
 
 TEST(Postures, UnknownNamesAndValuesOutOfRangeAreRefused) {
-  const HandPostures postures = read_postures(test::written("unit: rad\npostures:\n  grip: {a: 0, b: 2.5}\n"));
+  const HandPostures postures = read_postures(test::TextFile("unit: rad\npostures:\n  grip: {a: 0, b: 2.5}\n"));
   EXPECT_THAT([&] { postures.angles(two_joints(), "l_", "fist"); },
               ThrowsMessage<InputError>(EndsWith("there is no posture fist (allowed: grip)")));
   EXPECT_THAT([&] { postures.angles(two_joints(), "r_", "grip"); }, ThrowsMessage<InputError>(EndsWith("robot claw has no joint r_a")));
@@ -104,7 +104,7 @@ TEST(Postures, WhatIsWrongInAFileIsSaidWithLineAndKey) {
       {"postures:\n  a: {j: 1, k: 0}\n  b: {j: 0}\n", ":3: postures.b: joint k is missing"},
       {"postures:\n  a: {j: 1}\n  b: {j: 0, k: 0}\n", ":3: postures.b.k: is no joint of the first posture"}};
   for (const auto& [text, reason] : wrong)
-    EXPECT_THAT([t = text] { read_postures(test::written(t)); }, ThrowsMessage<InputError>(EndsWith(reason))) << text;
-  EXPECT_THAT([] { read_postures(test::written("postures: {a\n")); }, ThrowsMessage<InputError>(HasSubstr("not valid YAML")));
+    EXPECT_THAT([t = text] { read_postures(test::TextFile(t)); }, ThrowsMessage<InputError>(EndsWith(reason))) << text;
+  EXPECT_THAT([] { read_postures(test::TextFile("postures: {a\n")); }, ThrowsMessage<InputError>(HasSubstr("not valid YAML")));
   EXPECT_THAT([] { read_postures("nowhere.yaml"); }, ThrowsMessage<InputError>(HasSubstr("nowhere.yaml: cannot be read")));
 }

@@ -5,7 +5,7 @@
 
 #include <numbers>
 
-#include "tests/robot/control/files.hpp"
+#include "tests/robot/support/folder.hpp"
 using namespace robot;
 using testing::EndsWith;
 using testing::HasSubstr;
@@ -21,7 +21,7 @@ RobotModel crane() {
                   {.name = "slide", .type = JointType::prismatic, .parent = 2}};
   return model;
 }
-JointTrajectory read(const std::string& text) { return read_trajectory(test::written(text), crane(), {"swing", "slide"}); }
+JointTrajectory read(const std::string& text) { return read_trajectory(test::TextFile(text), crane(), {"swing", "slide"}); }
 }  // namespace
 
 TEST(TrajectoryFile, ColumnsComeInTheOrderAskedForAndInRadiansAndMetres) {
@@ -70,8 +70,40 @@ TEST(TrajectoryFile, WhatIsWrongIsSaidWithFileLineAndColumn) {
       {header + "0.1,0,0\n0.1,0,0\n", ":4: column 1 (time_s): 0.1 s is not after 0.1 s"},
       {header + "0.1,0,0\n0.05,0,0\n", ":4: column 1 (time_s): 0.05 s is not after 0.1 s"},
       {header + "0.1,0,0\n0.25,0,0\n", ":4: column 1 (time_s): a gap of 0.15 s before 0.25 s (allowed: up to 0.1 s)"},
-      {header + "\n0.1,2.1,0\n", ":4: column 2 (swing): 2.1 is beyond the joint's limits (allowed: -2 to 2 rad or m)"}};
+      {header + "\n0.1,2.1,0\n", ":4: column 2 (swing): joint swing = 2.1 is beyond its limits (allowed: -2 to 2 rad or m)"}};
   for (const auto& [text, reason] : wrong) EXPECT_THAT([t = text] { read(t); }, ThrowsMessage<InputError>(EndsWith(reason))) << text;
   EXPECT_NO_THROW(read(header + "0.1,2.01,0\n"));  // within the slack
   EXPECT_THAT([] { read_trajectory("nowhere.csv", crane(), {}); }, ThrowsMessage<InputError>(HasSubstr("nowhere.csv: cannot be read")));
+}
+
+TEST(TrajectoryFile, ColumnsOfAnotherRobotDriveJointsByScaleAndOffset) {
+  const test::TextFile file("i,t,pitch,other,lift\n0,2,0.5,x,100\n1,2.05,1,,300\n");
+  const JointTrajectory path = read_table(file, crane(), "t", {{"slide", "lift", 1e-3}, {"swing", "pitch", -1, 0.25}});
+  EXPECT_EQ(path.joints, (std::vector<std::string>{"slide", "swing"}));
+  EXPECT_EQ(path.times, (std::vector<Real>{2, 2.05}));
+  EXPECT_EQ(path.knots[0], VecX(Eigen::Vector2d(0.1, -0.25)));
+  EXPECT_EQ(path.knots[1], VecX(Eigen::Vector2d(0.3, -0.75)));
+}
+
+TEST(TrajectoryFile, WhatIsWrongInATableOfAnotherRobotIsSaidWithFileLineAndColumn) {
+  const std::pair<std::string, std::string> wrong[] = {
+      {"", "is empty (allowed: a header and at least two rows)"},
+      {"t,roll\n", ":1: column pitch is missing"},
+      {"pitch\n", ":1: column t is missing"},
+      {"t,pitch,pitch\n", ":1: column pitch is there twice"},
+      {"t,pitch\n0,0\n\n0.1,x\n", ":4: column 2 (pitch): x is no finite number"},
+      {"pitch,t\n0,0\n0.1,0.5\n", ":3: column 2 (t): a gap of 0.5 s before 0.5 s (allowed: up to 0.1 s)"},
+      {"t,pitch\n0,0\n0.1,-1.5\n", ":3: column 2 (pitch): joint swing = 3 is beyond its limits (allowed: -2 to 2 rad or m)"}};
+  for (const auto& [text, reason] : wrong)
+    EXPECT_THAT(
+        [t = text] {
+          read_table(test::TextFile(t), crane(), "t", {{"swing", "pitch", -2}});
+        },
+        ThrowsMessage<InputError>(EndsWith(reason)))
+        << text;
+  EXPECT_THAT(
+      [] {
+        read_table(test::TextFile("t,pitch\n"), crane(), "t", {{"hook", "pitch"}});
+      },
+      ThrowsMessage<InputError>(EndsWith("robot crane has no joint hook")));
 }

@@ -113,11 +113,14 @@ TEST(JointMap, JacobianByTheIndependentJointsIsTheDifferenceOfAPoseWhoseFollower
   EXPECT_EQ(J.col(1).norm(), 0);
 }
 
-TEST(JointMap, CirclesAndLimitsThatExcludeEachOtherAreRefusedByName) {
+TEST(JointMap, CirclesUnknownJointsAndLimitsThatExcludeEachOtherAreRefusedByName) {
   RobotModel circle = skew_tree();
   circle.joints[0].mimic = Mimic{1};
   circle.joints[1].mimic = Mimic{0};
   EXPECT_THAT([&] { joint_map(circle); }, ThrowsMessage<InputError>(HasSubstr("joint ja: follows itself")));
+  RobotModel alone = skew_tree();
+  alone.joints[1].mimic = Mimic{7};
+  EXPECT_THAT([&] { joint_map(alone); }, ThrowsMessage<InputError>(HasSubstr("joint jb: the joint that it mimics is none")));
   RobotModel narrow = skew_tree();
   narrow.joints[1].mimic = Mimic{0, 1, 1};
   narrow.joints[0].lower = 0;

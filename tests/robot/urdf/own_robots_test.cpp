@@ -2,27 +2,17 @@
 
 #include <cmath>
 
+#include "robot/kinematics/forward_kinematics.hpp"
 #include "robot/model/inertia.hpp"
 #include "robot/urdf/describe.hpp"
-#include "robot/urdf/read_urdf.hpp"
+#include "tests/robot/support/own_robots.hpp"
 using namespace robot;
+using test::own_robot;
 using testing::IsEmpty;
 
 namespace {
-RobotModel own(const std::string& name) { return read_urdf(TAPE_SOURCE_DIR "/data/robots/" + name + ".urdf"); }
-
 /// In the plane y = 0.
 const Vec3 kMirror(1, -1, 1);
-
-/// Poses of all links in the base's frame.
-std::vector<Pose> poses(const RobotModel& robot, const VecX& q) {
-  std::vector<Pose> X(robot.links.size(), Pose::Identity());
-  for (std::size_t j = 0; j < robot.joints.size(); ++j) {
-    const Joint& joint = robot.joints[j];
-    X[j + 1] = X[static_cast<std::size_t>(joint.parent)] * joint.X_PJ * Eigen::AngleAxisd(q[static_cast<int>(j)], joint.axis);
-  }
-  return X;
-}
 
 /// Bend of each joint, the same for joints that correspond.
 VecX some_joints(int count, int period) {
@@ -44,7 +34,7 @@ void expect_mirrored(const Link& l, const Pose& X_l, const Link& r, const Pose& 
 
 TEST(OwnRobots, LoadWithoutAssumptionsAndHaveTheJointsThatTheyPromise) {
   for (const auto& [name, joints] : {std::pair("arm7", 7), {"hand20_left", 20}, {"hand20_right", 20}, {"station", 54}}) {
-    const RobotModel robot = own(name);
+    const RobotModel robot = own_robot(name);
     EXPECT_EQ(robot.joints.size(), static_cast<std::size_t>(joints)) << name;
     EXPECT_EQ(robot.name, name);
     EXPECT_THAT(robot.notes, IsEmpty()) << name;
@@ -58,25 +48,25 @@ TEST(OwnRobots, LoadWithoutAssumptionsAndHaveTheJointsThatTheyPromise) {
 }
 
 TEST(OwnRobots, TheArmHasTheMassAndReachOfItsReadme) {
-  const RobotModel arm = own("arm7");
+  const RobotModel arm = own_robot("arm7");
   EXPECT_NEAR(total_mass(arm), 18.6, 1e-12);
-  const auto X = poses(arm, VecX::Zero(7));
+  const auto X = link_poses(arm, VecX::Zero(7));
   const Vec3 shoulder = X[2].translation(), flange = X[7] * arm.find_frame("arm_flange")->X_LF.translation();
   EXPECT_NEAR((flange - shoulder).norm(), 0.84, 1e-12);
 }
 
 TEST(OwnRobots, TheHandsHaveTheMassOfTheirReadmeAndAreMirrored) {
-  const RobotModel left = own("hand20_left"), right = own("hand20_right");
+  const RobotModel left = own_robot("hand20_left"), right = own_robot("hand20_right");
   EXPECT_NEAR(total_mass(right), 0.5196, 1e-12);
   const VecX q = some_joints(20, 20);
-  const auto Xl = poses(left, q), Xr = poses(right, q);
+  const auto Xl = link_poses(left, q), Xr = link_poses(right, q);
   for (std::size_t l = 0; l < left.links.size(); ++l) expect_mirrored(left.links[l], Xl[l], right.links[l], Xr[l]);
   EXPECT_LT(Xr[4].translation().y() * Xl[4].translation().y(), 0);  // the thumbs are on opposite sides
 }
 
 TEST(OwnRobots, TheSidesOfTheStationAreMirroredAndMadeOfTheArmAndTheHands) {
-  const RobotModel station = own("station"), arm = own("arm7"), hand = own("hand20_left");
-  const auto X = poses(station, some_joints(54, 27));
+  const RobotModel station = own_robot("station"), arm = own_robot("arm7"), hand = own_robot("hand20_left");
+  const auto X = link_poses(station, some_joints(54, 27));
   for (std::size_t l = 1; l <= 27; ++l) {
     EXPECT_EQ(station.links[l].name.substr(5), station.links[l + 27].name.substr(6));  // behind "left_" and "right_"
     expect_mirrored(station.links[l], X[l], station.links[l + 27], X[l + 27]);
@@ -90,14 +80,14 @@ TEST(OwnRobots, TheSidesOfTheStationAreMirroredAndMadeOfTheArmAndTheHands) {
 }
 
 TEST(OwnRobots, TheSrdfFilesNameNeighboursAndPalmsAndNothingUnknown) {
-  EXPECT_EQ(own("arm7").may_overlap.size(), 7u);
-  EXPECT_EQ(own("hand20_left").may_overlap.size(), 20u + 5u);  // neighbours; palm and the link behind each knuckle
-  EXPECT_EQ(own("station").may_overlap.size(), 54u + 2 * 5u);
+  EXPECT_EQ(own_robot("arm7").may_overlap.size(), 7u);
+  EXPECT_EQ(own_robot("hand20_left").may_overlap.size(), 20u + 5u);  // neighbours; palm and the link behind each knuckle
+  EXPECT_EQ(own_robot("station").may_overlap.size(), 54u + 2 * 5u);
 }
 
 TEST(OwnRobots, TheShoulderHoldsTheStretchedArmWithItsHand) {
-  const RobotModel station = own("station");
-  const auto X = poses(station, VecX::Zero(54));  // stretched out to the sides
+  const RobotModel station = own_robot("station");
+  const auto X = link_poses(station, VecX::Zero(54));  // stretched out to the sides
   Real moment = 0;
   for (std::size_t l = 2; l <= 27; ++l)
     moment += 9.81 * station.links[l].inertial.mass * (X[l] * station.links[l].inertial.com - X[2].translation()).y();

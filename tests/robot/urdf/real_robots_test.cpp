@@ -1,22 +1,16 @@
 #include <gmock/gmock.h>
 
-#include <cstdlib>
 #include <filesystem>
 
 #include "robot/model/inertia.hpp"
 #include "robot/urdf/describe.hpp"
 #include "robot/urdf/read_urdf.hpp"
+#include "tests/robot/support/real_data.hpp"
 using namespace robot;
 using testing::IsEmpty;
 
 namespace {
 namespace fs = std::filesystem;
-
-/// $TAPESIM_REAL_DATA, or ../shared/data beside the checkout. Robots of vendors, not part of this project.
-fs::path real_data() {
-  const char* folder = std::getenv("TAPESIM_REAL_DATA");
-  return folder ? fs::path(folder) : fs::path(TAPE_SOURCE_DIR) / ".." / "shared" / "data";
-}
 
 void expect_sound(const RobotModel& robot) {
   EXPECT_THAT(robot.notes, IsEmpty());
@@ -31,9 +25,8 @@ void expect_sound(const RobotModel& robot) {
 
 // Masses are the sums of the <mass> of the files.
 TEST(RealRobots, TheMarvinArmHasSevenJoints) {
-  const fs::path folder = real_data() / "marvin_m6_ccs" / "Marvin M6-S-L-CCS-696-V3.1 urdf (FUSION)" / "urdf";
-  if (!fs::exists(folder)) GTEST_SKIP() << "needs the Marvin arm in " << folder;
-  const RobotModel arm = read_urdf(folder / "Marvin M6-S-L-CCS-696-V3.1 urdf.urdf");
+  if (!fs::exists(test::marvin_arm())) GTEST_SKIP() << "needs the Marvin arm in " << test::marvin_arm();
+  const RobotModel arm = read_urdf(test::marvin_arm());
   expect_sound(arm);
   EXPECT_EQ(arm.joints.size(), 7u);
   EXPECT_NEAR(total_mass(arm), 1.2946 + 2.0407 + 1.9432 + 1.6913 + 1.5216 + 2.0099 + 0.69023365 + 0.68606212, 1e-12);
@@ -42,7 +35,7 @@ TEST(RealRobots, TheMarvinArmHasSevenJoints) {
 }
 
 TEST(RealRobots, TheWujiHandsHaveTwentyJointsWithRelativeAndWithPackageMeshes) {
-  const fs::path folder = real_data() / "wuji_hand" / "urdf";
+  const fs::path folder = test::real_data() / "wuji_hand" / "urdf";
   if (!fs::exists(folder)) GTEST_SKIP() << "needs the Wuji hands in " << folder;
   for (const std::string side : {"left", "right"})
     for (const std::string kind : {"", "-ros"}) {

@@ -1,40 +1,13 @@
 #pragma once
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "robot/urdf/read_urdf.hpp"
+#include "tests/robot/support/folder.hpp"
 
 /// Small robots, written by the tests.
 namespace robot::test {
-namespace fs = std::filesystem;
-
-/// A new folder, which goes with its scope.
-class Folder {
- public:
-  Folder() {
-    std::string name = fs::temp_directory_path() / "robot_test_XXXXXX";
-    if (!mkdtemp(name.data())) throw InputError("no temporary folder");
-    path_ = name;
-  }
-  ~Folder() { fs::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  const fs::path& path() const { return path_; }
-  /// Makes the folders above it, too.
-  fs::path write(const fs::path& file, const std::string& text) const {
-    fs::create_directories((path_ / file).parent_path());
-    std::ofstream(path_ / file, std::ios::binary) << text;
-    return path_ / file;
-  }
-
- private:
-  fs::path path_;
-};
-
 inline std::string robot_text(const std::string& content) {
   return "<?xml version=\"1.0\"?>\n<robot name=\"r\">\n" + content + "</robot>\n";
 }

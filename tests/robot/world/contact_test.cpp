@@ -13,7 +13,7 @@ World poking() {
   World world;
   add_table(world);
   RobotModel model = tree();
-  for (Link& link : model.links) link.collision = {box_shape({0.05, 0.05, 0.05}, link.inertial.com)};
+  for (Link& link : model.links) link.collision = {box_shape({0.05, 0.05, 0.05}, at(link.inertial.com))};
   for (int a = 0; a < 6; ++a)
     for (int b = a + 1; b < 6; ++b) model.may_overlap.emplace_back(a, b);
   world.add_robot(std::make_shared<RobotModel>(model),

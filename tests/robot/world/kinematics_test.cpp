@@ -96,6 +96,22 @@ TEST(Kinematics, TheMassMatrixIsTheInverseOfBulletsArticulatedBodies) {
   }
 }
 
+TEST(Kinematics, AStateSetsMimickingJointsByThoseThatTheyMimic) {
+  RobotModel model = tree();
+  model.joints[4].mimic = Mimic{3, -0.7, 0.2};
+  for (const bool fixed : {true, false}) {
+    World world;
+    const int robot = world.add_robot(std::make_shared<RobotModel>(model), {.fixed_base = fixed});
+    const RobotState given = odd_state(world, robot);
+    world.set_state(robot, given);
+    const RobotState set = world.state(robot);
+    EXPECT_NEAR(set.q[4], -0.7 * given.q[3] + 0.2, 1e-15);
+    EXPECT_NEAR(set.v.tail(5)[4], -0.7 * given.v.tail(5)[3], 1e-15);
+    EXPECT_EQ(set.q.head(4), given.q.head(4));
+    EXPECT_LT((set.v.head(world.dof(robot) - 1) - given.v.head(world.dof(robot) - 1)).norm(), 1e-14);
+  }
+}
+
 TEST(Kinematics, WhatCannotBeSimulatedIsRefusedByName) {
   const auto refused = [](RobotModel model, const RobotParams& params, const std::string& name) {
     World world;
@@ -108,7 +124,7 @@ TEST(Kinematics, WhatCannotBeSimulatedIsRefusedByName) {
   };
   RobotModel model = tree();
   model.links[2].inertial.mass = 0;
-  refused(model, {}, "link2: mass 0");
+  refused(model, {}, "link2: mass = 0");
   model = tree();
   model.links[3].inertial.inertia(0, 0) = -1;
   refused(model, {}, "link3: its inertia");
@@ -119,8 +135,8 @@ TEST(Kinematics, WhatCannotBeSimulatedIsRefusedByName) {
   model.joints[1].axis *= 2;
   refused(model, {}, "joint1: its axis");
   refused(tree(), {.drives = {{.kp = 1}}}, "1 drive gains for 5 joints");
-  refused(tree(), {.drives = std::vector<DriveGains>(5, {.kp = -1})}, "joint0: kp -1");
-  refused(tree(), {.friction = -1}, "friction -1");
+  refused(tree(), {.drives = std::vector<DriveGains>(5, {.kp = -1})}, "joint0: kp = -1");
+  refused(tree(), {.friction = -1}, "friction = -1");
   EXPECT_THROW(World({.substep = 0}), InputError);
   World world;
   world.add_robot(kTree);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <numbers>
 
+#include "robot/model/primitives.hpp"
 #include "robot/world/world.hpp"
 
 /// Robots made for tests.
@@ -13,9 +14,6 @@ using Model = std::shared_ptr<const RobotModel>;
 inline Mat3 box_inertia(Real mass, const Vec3& size) {
   const Vec3 s = size.cwiseAbs2();
   return mass / 12 * Vec3(s.y() + s.z(), s.x() + s.z(), s.x() + s.y()).asDiagonal();
-}
-inline Shape box_shape(const Vec3& size, const Vec3& center = Vec3::Zero()) {
-  return {.kind = Shape::Kind::box, .X_LS = Pose(Eigen::Translation3d(center)), .size = size};
 }
 inline Pose at(const Vec3& p) { return Pose(Eigen::Translation3d(p)); }
 inline Pose at(const Vec3& p, Real angle, const Vec3& axis) { return at(p) * Eigen::AngleAxisd(angle, axis.normalized()); }

@@ -1,4 +1,4 @@
-#include "robot/urdf/convex_hull.hpp"
+#include "robot/model/convex_hull.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "robot/model/inertia.hpp"
 #include "robot/model/primitives.hpp"
-#include "tests/robot/urdf/robot_file.hpp"
+#include "tests/robot/support/folder.hpp"
 using namespace robot;
 using namespace robot::test;
 
@@ -86,6 +86,17 @@ TEST(ConvexHull, OfFlatOrTooFewOrInfinitePointsIsRefused) {
   EXPECT_THROW(convex_hull({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}), InputError);
   EXPECT_THROW(convex_hull(std::vector<Vec3>{}), InputError);
   EXPECT_THROW(convex_hull({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, std::nan("")}}), InputError);
+}
+
+TEST(ConvexHull, AShrunkHullHasItsFacesInsideByTheDistanceOrATenthOfTheInnerRadius) {
+  for (const auto& [size, by] : {std::pair(Vec3(0.2, 0.3, 0.4), 1e-3), {Vec3(0.2, 0.3, 2e-3), 1e-4}}) {  // inner radius 0.1 m, 1 mm
+    const ShrunkHull hull = shrunk_hull(box_points(size), 1e-3);
+    EXPECT_NEAR(hull.by, by, 1e-9);
+    EXPECT_EQ(hull.vertices.size(), 8u);
+    for (const Vec3& p : hull.vertices)
+      EXPECT_LT(((p - size / 2).cwiseAbs() - size / 2 + Vec3::Constant(by)).cwiseAbs().maxCoeff(), 1e-4 * size.maxCoeff());
+  }
+  EXPECT_THROW(shrunk_hull({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, 1e-3), InputError);
 }
 
 TEST(ConvexHull, TheCacheGivesTheSameHullAgainWithoutComputing) {

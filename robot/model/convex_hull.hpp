@@ -17,4 +17,13 @@ TriangleMesh convex_hull(const std::vector<Vec3>& points, const std::filesystem:
 
 /// $TAPE_CACHE; empty if that is not set.
 std::filesystem::path hull_cache();
+
+/// What is inside the hull by a distance.
+struct ShrunkHull {
+  std::vector<Vec3> vertices;  ///< [m]
+  Real by = 0;                 ///< [m] how far its faces moved
+};
+/// The hull with every face moved inwards by a distance [m], or by a tenth of the hull's inner radius if that is less; rounded as the hull.
+/// @throws InputError as convex_hull
+ShrunkHull shrunk_hull(const std::vector<Vec3>& points, Real by);
 }  // namespace robot

@@ -1,4 +1,4 @@
-#include "robot/urdf/convex_hull.hpp"
+#include "robot/model/convex_hull.hpp"
 
 #include <LinearMath/btConvexHullComputer.h>
 #include <fmt/format.h>
@@ -103,6 +103,18 @@ void require_volume(const std::vector<Vec3>& points) {
 TriangleMesh convex_hull(const std::vector<Vec3>& points) {
   require_volume(points);
   return mesh_of(compute(points), points);
+}
+
+ShrunkHull shrunk_hull(const std::vector<Vec3>& points, Real by) {
+  constexpr Real kMost = 0.1;  // of the inner radius
+  require_volume(points);
+  btConvexHullComputer computer;
+  ShrunkHull hull;
+  hull.by = computer.compute(points.front().data(), sizeof(Vec3), static_cast<int>(points.size()), by, kMost);
+  if (hull.by < 0 || computer.vertices.size() < 4) throw InputError("convex hull: nothing is left of it");
+  for (int v = 0; v < computer.vertices.size(); ++v)
+    hull.vertices.emplace_back(computer.vertices[v].x(), computer.vertices[v].y(), computer.vertices[v].z());
+  return hull;
 }
 
 TriangleMesh convex_hull(const std::vector<Vec3>& points, const std::filesystem::path& cache) {

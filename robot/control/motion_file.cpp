@@ -1,0 +1,67 @@
+#include "robot/control/motion_file.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+namespace robot {
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\r";
+  const auto first = text.find_first_not_of(kBlanks);
+  return first == text.npos ? std::string_view() : text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+MotionFile::MotionFile(const std::filesystem::path& file, const RobotModel& model, const std::vector<std::string>& joints,
+                       const TrajectoryFileOptions& options)
+    : file_(file), model_(model), options_(options), text_(file), result_{joints, {}, {}, JointTrajectory::Between::linear} {
+  if (!text_) throw InputError(file.string() + ": cannot be read");
+  for (const std::string& name : joints) {
+    in_model_.push_back(model.find_joint(name));
+    if (in_model_.back() < 0) throw InputError(fmt::format("{}: robot {} has no joint {}", file.string(), model.name, name));
+  }
+}
+
+bool MotionFile::next_line() {
+  while (std::getline(text_, line_)) {
+    ++line_number_;
+    const std::string_view line = trimmed(line_);
+    if (!line.empty() && line.front() != '#') return true;
+  }
+  return false;
+}
+
+void MotionFile::fail(const std::string& reason) const { throw InputError(fmt::format("{}:{}: {}", file_.string(), line_number_, reason)); }
+
+Real MotionFile::number(const std::string& where, std::string_view text) const {
+  if (text.empty()) fail(where + ": is empty");
+  Real value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+    fail(fmt::format("{}: {} is no finite number", where, text));
+  return value;
+}
+
+void MotionFile::require_within(const std::string& where, Real q, std::size_t j) const {
+  const Joint& of_model = joint(j);
+  if (q < of_model.lower - options_.slack || q > of_model.upper + options_.slack)
+    fail(fmt::format("{}: joint {} = {:g} is beyond its limits (allowed: {:g} to {:g} rad or m)", where, of_model.name, q, of_model.lower,
+                     of_model.upper));
+}
+
+void MotionFile::add(const std::string& where, Real t, const VecX& q) {
+  if (!result_.times.empty()) {
+    const Real before = result_.end();
+    if (t <= before) fail(fmt::format("{}: {:g} s is not after {:g} s", where, t, before));
+    if (t - before > options_.max_gap * (1 + 1e-9))
+      fail(fmt::format("{}: a gap of {:g} s before {:g} s (allowed: up to {:g} s)", where, t - before, t, options_.max_gap));
+  }
+  result_.times.push_back(t);
+  result_.knots.push_back(q);
+}
+
+JointTrajectory MotionFile::finish() {
+  if (rows() < 2) throw InputError(fmt::format("{}: has {} rows (allowed: at least 2)", file_.string(), rows()));
+  return std::move(result_);
+}
+}  // namespace robot
