@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "robot/urdf/convex_hull.hpp"
+#include "robot/model/convex_hull.hpp"
 #include "tape/core/error.hpp"
 #include "tape/model/mesh_check.hpp"
 #include "tape/model/primitives.hpp"

@@ -32,7 +32,7 @@ World strip_world() {
 class FakeStepper : public Stepper {
  public:
   explicit FakeStepper(std::function<void(State&, StepReport&)> act) : act_(std::move(act)) {}
-  StepReport step(State& state) override {
+  StepReport step(State& state, const Exchange&) override {
     StepReport report;
     report.dt = kDt;
     report.grip_force = {Vec3::Zero()};

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "tape/math/rotation.hpp"
 using namespace tape;
 
 namespace {
