@@ -11,6 +11,7 @@
 
 #include <unistd.h>
 
+#include "cosim/exchange/exchange.hpp"
 #include "cosim/run/read_run.hpp"
 #include "cosim/run/state_file.hpp"
 #include "cosim/scene/mesh_file.hpp"
@@ -126,7 +127,7 @@ void simulate_one_step(SceneFile file) {
   const tape::World world = tape::World::build(input.setup);
   tape::State state = tape::State::start(world);
   const std::string before = state.hash();
-  const tape::StepReport report = make_stepper(tape::Backend::cpu, world)->step(state);
+  const tape::StepReport report = make_stepper(tape::Backend::cpu, world, input.robots)->step(state);
   EXPECT_EQ(report.ok, report.failure.empty());
   if (!report.ok) {
     EXPECT_EQ(state.hash(), before) << report.failure;
