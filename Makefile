@@ -38,7 +38,7 @@ lint:
 	@bash cmake/lint.sh
 
 format:
-	clang-format -i $$(find tape cosim apps tests -name '*.[ch]pp' -o -name '*.inl' -o -name '*.cu')
+	clang-format -i $$(find tape robot cosim apps tests -name '*.[ch]pp' -o -name '*.inl' -o -name '*.cu')
 
 build-%: deps-check
 	cmake --preset $*
