@@ -29,8 +29,8 @@ std::string symbols_of(const std::string& library) {
   return without_spaces(all);
 }
 #endif
-/// Launches whatever a scene with strips, driven and dynamic bodies, grips, friction and adhesion launches, with all linear solvers that
-/// CUDA offers, both Hessians and stop rules, a start that is not finite, and the forces for pictures.
+/// Launches whatever a scene with strips, driven, dynamic and linked bodies, grips, friction and adhesion launches, with all linear solvers
+/// that CUDA offers, both Hessians and stop rules, a start that is not finite, and the forces for pictures.
 std::set<std::string> launched_kernels() {
   record_launches(true);
   for (const LinearKind linear : {LinearKind::cholesky, LinearKind::pcg_jacobi, LinearKind::pcg_two_level}) {
@@ -42,6 +42,8 @@ std::set<std::string> launched_kernels() {
     test::add_body(setup, "box", box_mesh(Vec3(0.01, 0.01, 0.01)), Motion::dynamic, Vec3(-0.012, 0, 0.0056)).material = 2;
     test::add_body(setup, "lid", box_mesh(Vec3(0.01, 0.01, 0.01)), Motion::dynamic, Vec3(0.005, 0, 0.0056)).material = 3;
     test::add_body(setup, "pusher", box_mesh(Vec3(0.01, 0.01, 0.01)), Motion::driven, Vec3(0, 0.03, 0.006)).velocity = Vec3(0, -0.1, 0);
+    test::add_body(setup, "link", box_mesh(Vec3(0.006, 0.01, 0.01)), Motion::linked, Vec3(0.015, 0, 0.0056)).material = 2;
+    setup.scene.articulations = {{"robot", {"link"}, 6}};
     Grip grip;
     grip.name = "pull";
     grip.what = {.object = "tape", .vertices = {0, 1, 2, 3}, .points = {}};
@@ -52,6 +54,8 @@ std::set<std::string> launched_kernels() {
       setup.scene.adhesives.push_back({0, material, {law, {{true, true}, {true, true}}, {.beta0 = 1}, {.reach = 1}, {.floor = 0}}});
     }
     test::Simulation simulation(setup);
+    const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(6, 6);
+    simulation.exchange.articulations = {{Eigen::VectorXd::Zero(6), one, {one}}};
     for (int k = 0; k < 5; ++k) simulation.step();
     EXPECT_TRUE(simulation.broken.empty()) << simulation.broken.front();
     for (const AdhesionReport& interface : simulation.report().adhesion) EXPECT_GT(interface.live, 0);
