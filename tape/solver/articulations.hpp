@@ -50,7 +50,7 @@ class Articulations {
   /// Solves for the unknowns' Newton direction x. The right side b, minus the gradient, becomes that by what is solved for: 0 at links.
   /// @param points  [n] m, position of each block of a strip
   LinearReport solve(LinearSolver& linear, const BlockMatrix& a, Span<const Vec3> points, Span<const Vec3> q, Span<Vec3> b, Span<Vec3> x);
-  /// Coordinates [articulations][m] from blocks [q blocks] and back.
+  /// Coordinates [articulations][m] from blocks [q blocks].
   std::vector<Eigen::VectorXd> coordinates(const std::vector<Vec3>& q) const;
 
  private:

@@ -3,7 +3,6 @@
 #include <tuple>
 #include <vector>
 
-#include "tape/bodies/articulation.hpp"
 #include "tape/bodies/relocation.hpp"
 #include "tape/contact/kernels.inl"
 #include "tape/core/side.hpp"
@@ -96,9 +95,10 @@ class Objective {
   void linearize(const StateView& s, HessianMode mode);
   Span<const Vec3> gradient() const { return gradient_.span(); }
   const BlockMatrix& matrix() const { return matrix_; }
-  /// What an effect exerts on the rigid body of two blocks, the torque about its frame's origin, at the s of linearize().
-  template <class T>
-  Wrench wrench(const Term<T>& term, int block) const;
+  /// Calls f(std::type_identity<effect>, forces) with what each effect exerts at s on the first `blocks` of unknowns [N; N m for
+  /// rotations]. Overwrites the derivatives that linearize() found.
+  template <class F>
+  void for_each_force(const StateView& s, int blocks, const F& f);
   /// "effect 'name', element i": the first whose energy is not finite; empty if all are.
   std::string first_non_finite(const StateView& s);
   /// The same of the gradients and Hessians that linearize() found.
@@ -118,7 +118,7 @@ class Objective {
     if (term.on) f(T::name, term);
   }
   void set_pattern(const StateView& s, bool contact);
-  void fill(const StateView& s, HessianMode mode, bool contact);
+  void fill(const StateView& s, HessianMode mode, bool contact, bool hessian);
 
   int blocks_ = 0, strip_vertices_ = 0;
   Terms terms_;

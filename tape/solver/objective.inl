@@ -64,14 +64,6 @@ struct FirstNonFiniteSlot {
     return count;
   }
 };
-/// Gradient slot i of an effect if it is of this block.
-struct SlotOfBlock {
-  Span<const std::uint64_t> rows;
-  Span<const Vec3> gradient;
-  int first;
-  std::uint64_t block;
-  TAPE_HD Vec3 operator()(int i) const { return rows[first + i] == block ? gradient[first + i] : Vec3(Vec3::Zero()); }
-};
 template <class T>
 struct FlagActive {
   T term;
@@ -178,6 +170,7 @@ struct FillSlots {
   StateView s;
   Selection select;
   HessianMode mode;
+  bool with_hessian;
   Span<const int> gradient, hessian;
   int gradient_base, hessian_base;
   Span<Vec3> gradient_out;
@@ -188,6 +181,7 @@ struct FillSlots {
     const VecN<3 * stencil_size<T>> g = term.gradient(s, e);
     Mat3* out = hessian_out.data + hessian_base + hessian[i];
     relocate_gradient(r, g, gradient_out.data + gradient_base + gradient[i]);
+    if (!with_hessian) return;
     if (!fill_squares(r, e, out)) {
       const MatN<3 * stencil_size<T>, 3 * stencil_size<T>> H = term.hessian(s, e, mode);
       relocate_hessian(r, g, H, mode == HessianMode::exact, out);
@@ -349,7 +343,7 @@ inline void Objective::set_pattern(const StateView& s, bool contact) {
   if (!contact || group.rows.size() > 0) group.gather.set_rows(blocks_, group.rows);
 }
 
-inline void Objective::fill(const StateView& s, HessianMode mode, bool contact) {
+inline void Objective::fill(const StateView& s, HessianMode mode, bool contact, bool hessian) {
   SlotGroupBuffers& group = contact ? contact_ : fixed_;
   for_each([&]<class T>(std::string_view, Term<T>& term) {
     if (is_contact<T> != contact || term.count == 0) return;
@@ -358,6 +352,7 @@ inline void Objective::fill(const StateView& s, HessianMode mode, bool contact) 
                                                      s,
                                                      {term.active.span()},
                                                      mode,
+                                                     hessian,
                                                      term.offsets.gradient.span(),
                                                      term.offsets.hessian.span(),
                                                      term.gradient_base,
@@ -368,22 +363,29 @@ inline void Objective::fill(const StateView& s, HessianMode mode, bool contact) 
   if (!contact || group.rows.size() > 0) group.gather.gather(group.gradient.span(), contact, gradient_.span());
 }
 
-template <class T>
-Wrench Objective::wrench(const Term<T>& term, int block) const {
-  Wrench sum;
-  if (term.count == 0) return sum;
-  const SlotGroupBuffers& group = is_contact<T> ? contact_ : fixed_;
-  const auto of = [&](int b) {
-    const objective::SlotOfBlock kernel{group.rows.span(), group.gradient.span(), term.gradient_base, static_cast<std::uint64_t>(b)};
-    return Vec3(-reduce(term.gradient_slots, Vec3(Vec3::Zero()), kernel, Plus{}));
-  };
-  return {of(block), of(block + 1)};
+template <class F>
+void Objective::for_each_force(const StateView& s, int blocks, const F& f) {
+  set_pattern(s, true);
+  for (const bool contact : {false, true}) {
+    fill(s, HessianMode::exact, contact, false);
+    const SlotGroupBuffers& group = contact ? contact_ : fixed_;
+    const std::vector<std::uint64_t> rows = group.rows.download();
+    const std::vector<Vec3> gradient = group.gradient.download();
+    for_each([&]<class T>(std::string_view, Term<T>& term) {
+      if (is_contact<T> != contact || term.count == 0) return;
+      std::vector<Vec3> force(static_cast<std::size_t>(blocks), Vec3::Zero());
+      const auto first = static_cast<std::size_t>(term.gradient_base), end = first + static_cast<std::size_t>(term.gradient_slots);
+      for (std::size_t k = first; k < end; ++k)
+        if (rows[k] < force.size()) force[rows[k]] -= gradient[k];
+      f(std::type_identity<T>{}, force);
+    });
+  }
 }
 
 inline void Objective::linearize(const StateView& s, HessianMode mode) {
   set_pattern(s, true);
-  fill(s, mode, false);
-  fill(s, mode, true);
+  fill(s, mode, false, true);
+  fill(s, mode, true, true);
   matrix_.accumulate_fixed(fixed_.hessian.span());
   matrix_.set_contact_pattern(contact_.keys.span());
   matrix_.accumulate_contact(contact_.hessian.span());

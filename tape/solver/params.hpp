@@ -8,9 +8,8 @@ namespace tape {
 constexpr auto enum_names(HessianMode) { return std::array<std::string_view, 2>{"exact", "projected"}; }
 
 /// `velocity`: the last Newton update, before any limit, moves no vertex faster than the tolerance [the paper].
-/// `work`, the default: the decrease it still promises is below the kinetic energy of the moving mass at the tolerance. A reduced roll of
-/// 32 turns swings within 5 % of its converged range for any tolerance from 1e-4 to 1e-1 m/s (`velocity`: within 17 %), and 1e-2 m/s costs
-/// what `velocity` takes for the same accuracy at 1e-3 (tape/reduction/README.md). Where nothing has mass, as `velocity`.
+/// `work`, the default: the decrease it still promises is below the kinetic energy of the tape at the tolerance (of all that moves, in a
+/// scene without tape; as `velocity` where nothing has mass). What it costs and what it holds a roll to: tape/reduction/README.md.
 /// Either way the energy must have fallen along the update as Newton's parabola says: what leaves contact moves little at first.
 enum class StopRule { velocity, work };
 constexpr auto enum_names(StopRule) { return std::array<std::string_view, 2>{"velocity", "work"}; }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -108,7 +109,9 @@ class SideStepper final : public Stepper {
     for (int v = 0; v < (world.assembly.strips.empty() ? 0 : world.assembly.strips[0].vertices); ++v)
       along.push_back(world.assembly.rest[static_cast<std::size_t>(v)].x());
     along_.upload(along);
-    for (Real m : world.assembly.mass) moving_mass_ += m;
+    const std::vector<Real>& mass = world.assembly.mass;
+    const auto tape_end = mass.begin() + world.assembly.strip_vertices;
+    moving_mass_ = std::accumulate(mass.begin(), tape_end == mass.begin() ? mass.end() : tape_end, Real{0});
     const Real dhat = world.setup.scene.dhat();
     if (world.is_on(Barrier::name)) search_.emplace(world.surface, dhat, world.setup.scene.contact.guard * dhat);
     std::vector<bool> on;
@@ -215,25 +218,24 @@ class SideStepper final : public Stepper {
     if (exchange_.articulations.empty()) return;
     const Real share = dt / world_.setup.scene.time.dt;
     const std::vector<Eigen::VectorXd> q = articulations_.coordinates(now_.q.download());
-    objective_->linearize(view(now_), mode_);
     for (std::size_t a = 0; a < q.size(); ++a) {
-      const ArticulationStep& step = exchange_.articulations[a];
-      ArticulationReport& done = progress_.done[a];
-      progress_.lead[a] = (q[a] - share * step.predicted) / dt;
-      done.q += q[a];
-      const std::vector<int>& bodies = world_.assembly.articulations[a].links;
-      for (std::size_t l = 0; l < bodies.size(); ++l) {
-        const int block = world_.assembly.bodies[static_cast<std::size_t>(bodies[l])].block;
-        VecN<6> all = VecN<6>::Zero();
-        objective_->for_each([&]<class T>(std::string_view, Term<T>& term) {
-          const Wrench wrench = objective_->wrench(term, block);
-          Wrench& sum = of_effect<T>(done.links[l]);
-          sum.force += share * wrench.force, sum.torque += share * wrench.torque;
-          all.head<3>() += wrench.force, all.tail<3>() += wrench.torque;
-        });
-        done.force += share * step.jacobian[l].transpose() * all;
-      }
+      progress_.lead[a] = (q[a] - share * exchange_.articulations[a].predicted) / dt;
+      progress_.done[a].q += q[a];
     }
+    objective_->for_each_force(view(now_), world_.assembly.first_strip_block, [&]<class T>(std::type_identity<T>, const auto& force) {
+      for (std::size_t a = 0; a < q.size(); ++a) {
+        ArticulationReport& done = progress_.done[a];
+        const std::vector<int>& bodies = world_.assembly.articulations[a].links;
+        for (std::size_t l = 0; l < bodies.size(); ++l) {
+          const auto block = static_cast<std::size_t>(world_.assembly.bodies[static_cast<std::size_t>(bodies[l])].block);
+          VecN<6> wrench;
+          wrench << force[block], force[block + 1];
+          Wrench& sum = of_effect<T>(done.links[l]);
+          sum.force += share * wrench.head<3>(), sum.torque += share * wrench.tail<3>();
+          done.force += share * exchange_.articulations[a].jacobian[l].transpose() * wrench;
+        }
+      }
+    });
   }
   template <class T>
   static Wrench& of_effect(LinkReport& link) {
@@ -619,7 +621,7 @@ class SideStepper final : public Stepper {
   static constexpr Real kPositionRoundOff = 1e-15, kEnergyRoundOff = 4e-15;
   HessianMode mode_ = HessianMode::exact;       // of the last direction
   EnergySum energy_;                            // at now_
-  Real dt_ = 0, moving_mass_ = 0, extent_ = 0;  // extent_: largest coordinate [m]
+  Real dt_ = 0, moving_mass_ = 0, extent_ = 0;  // moving_mass_: of the tape, if there is any; extent_: largest coordinate [m]
   bool overshot_ = false;
   Real search_ms_ = 0, assembly_ms_ = 0, linear_ms_ = 0, ccd_ms_ = 0, line_search_ms_ = 0, front_ms_ = 0;
   int searches_ = 0;
