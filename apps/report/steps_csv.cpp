@@ -1,6 +1,7 @@
 #include "apps/report/steps_csv.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace tape::report {
 namespace {
@@ -50,7 +51,8 @@ void visit_columns(const World& world, const cosim::StepRow& row, const F& f) {
         vector("link_" + links[l] + what, "N", wrench.force), vector("link_" + links[l] + what, "Nm", wrench.torque);
     }
   }
-  if (!world.setup.scene.articulations.empty()) f("momentum_exchange_residual", r.exchange_residual);
+  if (!world.setup.scene.articulations.empty())
+    f("momentum_exchange_residual", r.exchange_residual.value_or(std::numeric_limits<Real>::quiet_NaN()));
 }
 }  // namespace
 

@@ -220,7 +220,7 @@ void CoupledStepper::book_momentum(const tape::StepReport& report, const std::ve
     given += dt * force.norm();
     lost += (now[a] - alone[a] - dt * force).norm();
   }
-  report_.residual = given > 0 ? lost / given : 0;
+  if (given > 0) report_.residual = lost / given;
 }
 
 void CoupledStepper::note_mismatch(const tape::State& state) {

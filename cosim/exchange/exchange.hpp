@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "cosim/exchange/robots.hpp"
@@ -8,11 +9,11 @@
 namespace cosim {
 /// Of one step.
 struct ExchangeReport {
-  int iterations = 1;         ///< tape solves
-  double bullet_ms = 0;       ///< in Bullet, both passes
-  double momentum_given = 0;  ///< [N s] sum over links of the magnitude of what the tape side gave them
-  double residual = 0;        ///< [1] what free robots received of it and was not given, of what was given
-  double mismatch = 0;        ///< [m] farthest that a link's frame stands on the tape side from where Bullet has it
+  int iterations = 1;                   ///< tape solves
+  double bullet_ms = 0;                 ///< in Bullet, both passes
+  double momentum_given = 0;            ///< [N s] sum over links of the magnitude of what the tape side gave them
+  std::optional<double> residual = {};  ///< [1] what of it robots with a free base did not receive; none: none was touched
+  double mismatch = 0;                  ///< [m] farthest that a link's frame stands on the tape side from where Bullet has it
 };
 
 /// Unknowns of a robot in the exchange: independent joint motions, six more for a free base, and one that goes from 0 to 1 over a step

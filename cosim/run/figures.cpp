@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "cosim/roll/roll_figures.hpp"
 #include "cosim/run/summary.hpp"
@@ -103,9 +104,11 @@ FigureValues link_force(const World& world, const RunLog& log) {
 }
 
 FigureValues momentum_exchange(const World&, const RunLog& log) {
-  Real most = 0;
-  for (const StepRow& row : log.rows) most = std::max(most, row.report.exchange_residual);
-  return {{"momentum_exchange_residual", most}};
+  std::optional<Real> most;
+  for (const StepRow& row : log.rows)
+    if (const std::optional<Real> now = row.report.exchange_residual) most = std::max(most.value_or(0), *now);
+  if (!most) return {};
+  return {{"momentum_exchange_residual", *most}};
 }
 
 FigureValues max_strain(const World&, const RunLog& log) {
@@ -198,7 +201,8 @@ constexpr Figure kFigures[] = {
     {"hub_range", "range of the hub's turning about its axis since its last grip was released", hub_range},
     {"hub_travel", "how far the centre of the hub ends from where it started", hub_travel},
     {"link_force", "force of the tape side on each link that it touches: mean over the second half of the run, and largest", link_force},
-    {"momentum_exchange", "momentum given to robots with a free base that did not arrive, of what was given: worst step",
+    {"momentum_exchange",
+     "momentum given to robots with a free base that did not arrive, of what was given: worst step; nothing if none was touched",
      momentum_exchange},
     {"roll", "turns, length, outer radius, mass and inertia of what is wound at the end", roll},
 };

@@ -2,6 +2,7 @@
 #include <array>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -68,7 +69,7 @@ struct StepReport {
   std::vector<Vec3> body_force;                   ///< [bodies] N of contact and grips on the body (driven and dynamic)
   std::vector<Pose> body_pose;                    ///< [bodies] X_WB at the end
   std::vector<ArticulationReport> articulations;  ///< [Scene::articulations]
-  Real exchange_residual = 0;                     ///< [1] momentum given to articulations that did not arrive, of what was given
+  std::optional<Real> exchange_residual;  ///< [1] momentum given to free robots that did not arrive, of what was; none: no such touched
   Real wall_ms = 0;
 };
 

@@ -39,13 +39,16 @@ TEST(Exchange, AFloatingRobotAndAStripKeepTheirMomentum) {
   Coupled both(free_strip(0.005, 1e-9), two_links(Vec3(0.05, 0, -0.3)));
   const Vec3 before = 0.008 * Vec3(0.05, 0, -0.3);
   Real given = 0;
+  int measured = 0;
   for (int k = 0; k < 12; ++k) {
     ASSERT_TRUE(both.step()) << both.report.failure;
     const Vec3 now = both.bullet().generalized_momentum(0).head<3>();
     ASSERT_LT((both.report.momentum + now - before).norm(), 1e-9 * before.norm()) << k;
-    EXPECT_LT(both.stepper->exchange().residual, 1e-9) << k;
+    EXPECT_LT(both.stepper->exchange().residual.value_or(0), 1e-9) << k;
+    measured += both.stepper->exchange().residual.has_value() ? 1 : 0;
     given += both.stepper->exchange().momentum_given;
   }
+  EXPECT_GE(measured, 5) << "steps in which they touched";
   EXPECT_GT(given, 0.02 * before.norm());
   EXPECT_GT(both.report.momentum.norm(), 0.02 * before.norm());
 }
