@@ -63,8 +63,14 @@ class Studio {
     std::vector<int> follow = {};
     Vec3 start = Vec3::Zero();  ///< [m] their middle in the first state
   };
+  /// The links of a robot, "robot:link", are one thing.
+  static std::string thing(const cosim::RecordedObject& object) { return object.name.substr(0, object.name.find(':')); }
   Vec3 object_color(std::size_t o) const {
-    return recording_.mesh().objects[o].strip ? kTapeFront : kBodyColors[o % std::size(kBodyColors)];
+    const auto& objects = recording_.mesh().objects;
+    if (objects[o].strip) return kTapeFront;
+    std::size_t first = o;  // of this thing
+    while (first > 0 && thing(objects[first - 1]) == thing(objects[o])) --first;
+    return kBodyColors[first % std::size(kBodyColors)];
   }
   /// Whether colours tell things apart, not values.
   bool by_thing() const { return params_.view.color == ColorBy::material || params_.view.color == ColorBy::part; }
@@ -75,9 +81,11 @@ class Studio {
     if (params_.view.color == ColorBy::part)
       for (std::size_t p = 0; p < std::size(kParts); ++p) legend.swatches.push_back({kParts[p].name, kParts[p].color});
     const auto& objects = recording_.mesh().objects;
-    for (std::size_t o = 0; o < objects.size(); ++o)
+    for (std::size_t o = 0; o < objects.size(); ++o) {
+      if (o > 0 && thing(objects[o]) == thing(objects[o - 1])) continue;
       if (params_.view.color == ColorBy::material || (by_thing() && !objects[o].strip))
-        legend.swatches.push_back({objects[o].name, object_color(o)});
+        legend.swatches.push_back({thing(objects[o]), object_color(o)});
+    }
     if (params_.view.track >= 0) legend.swatches.push_back({fmt::format("row at {:g} m", params_.view.track), kTracked});
     return legend;
   }

@@ -41,7 +41,7 @@ cosim::RunLog simulate(const RunArguments& arguments, const LoadedWorld& loaded,
   const int first = state.step;
   const int planned = cosim::planned_steps(world.setup.scene) - first;
   Progress progress("run", arguments.steps < 0 ? planned : std::min(planned, arguments.steps));
-  cosim::RunOptions options{.max_steps = arguments.steps, .record = loaded.input.run.record};
+  cosim::RunOptions options{.max_steps = arguments.steps, .record = loaded.input.run.record, .events = loaded.input.run.events};
   options.stop_asked = interrupted;
   options.on_step = [&](const State& now, const cosim::StepRow& row) {
     folder.add_step(row);

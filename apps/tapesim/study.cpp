@@ -48,7 +48,7 @@ StudyRun run_one(const Study& study, const std::vector<std::string>& values, con
   const std::string key = key_of(study, values, loaded, state);
   if (store.find(key, result)) return result;
   const std::unique_ptr<Stepper> stepper = cosim::make_stepper(Backend::cpu, loaded.world, loaded.input.run.robots);
-  cosim::RunOptions options{.record = loaded.input.run.record};
+  cosim::RunOptions options{.record = loaded.input.run.record, .events = loaded.input.run.events};
   options.stop_asked = interrupted;
   const cosim::RunLog log = simulate(loaded.world, *stepper, state, options);
   const cosim::RunSummary summary = summarize(loaded.world, log, {});

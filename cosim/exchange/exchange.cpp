@@ -13,6 +13,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using robot::RobotState;
 
+constexpr double kBare = 0.5;   // of the bare robot's inertia, that limited drives leave at least
 constexpr double kHeavy = 1e6;  // times the inertia: a link that feels nothing
 /// [N/m] of the hold that closes the gap between the two worlds, as stiff as that of driven bodies.
 constexpr double kClosing = 1e9;
@@ -49,7 +50,7 @@ int coordinates(const robot::World& world, int robot) { return static_cast<int>(
 tape::Pose to_tape(const robot::Pose& pose) { return {pose.linear(), pose.translation()}; }
 
 CoupledStepper::CoupledStepper(const RobotScene& robots, const tape::World& world, std::unique_ptr<tape::Stepper> tape)
-    : robots_(robots), world_(world), tape_(std::move(tape)), bullet_(make_world(robots)) {
+    : robots_(robots), world_(world), tape_(std::move(tape)), bullet_(make_world(robots)), pinching_(robots, world) {
   const tape::Scene& scene = world.setup.scene;
   for (const tape::Articulation& articulation : scene.articulations) {
     const auto named = [&](const RobotPart& part) { return part.name == articulation.name; };
@@ -67,18 +68,51 @@ CoupledStepper::CoupledStepper(const RobotScene& robots, const tape::World& worl
   start_ = bullet_.save();
 }
 
+/// Takes out of the inertia what it owes to drives that have limits: on the diagonal, as each works on its own joint, and so much that what
+/// is left is not less than the bare robot's.
+/// @param T  motions of the robot by independent ones
+void CoupledStepper::add_drives(const Part& part, const MatrixXd& bare, const MatrixXd& T, tape::ArticulationStep& step) const {
+  const Eigen::Index n = T.cols(), joints = bullet_.state(part.robot).q.size();
+  const VectorXd limit = bullet_.effort_limit(part.robot), effort = bullet_.drive_effort(part.robot);
+  step.drive = step.least = step.most = VectorXd::Zero(n + 1);
+  const MatrixXd driven = step.inertia.topLeftCorner(n, n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    Eigen::Index joint = -1;  // the one that this motion is, unless that has no drive with a limit
+    for (Eigen::Index j = 0; j < joints; ++j)
+      if (T(T.rows() - joints + j, k) == 1 && std::isfinite(limit[j])) joint = joint < 0 ? j : joint;
+    if (joint < 0) continue;
+    step.drive[k] = std::max(0.0, driven(k, k) - bare(k, k));
+    step.least[k] = std::min(0.0, effort[joint] - limit[joint]), step.most[k] = std::max(0.0, effort[joint] + limit[joint]);
+  }
+  for (const double share : {1.0, 0.9, 0.7, 0.5, 0.0}) {
+    const MatrixXd left = driven - MatrixXd(share * step.drive.head(n).asDiagonal());
+    if (share > 0 && (left - kBare * bare).llt().info() != Eigen::Success) continue;
+    step.drive *= share;
+    step.inertia.topLeftCorner(n, n) = left;
+    return;
+  }
+}
+
 /// What Bullet, which has just made the step alone, says of a robot.
 tape::ArticulationStep CoupledStepper::predicted(const Part& part, const tape::State& state, const RobotState& before, double dt) const {
   const MatrixXd T = bullet_.motions(part.robot);
   const Eigen::Index n = T.cols(), dof = T.rows();
   const Eigen::CompleteOrthogonalDecomposition<MatrixXd> inverse(T);
-  tape::ArticulationStep step{VectorXd(n + 1), MatrixXd::Zero(n + 1, n + 1), {}};
+  tape::ArticulationStep step;
+  step.predicted = VectorXd(n + 1), step.inertia = MatrixXd::Zero(n + 1, n + 1);
   step.predicted.head(n) = inverse.solve(change(before, bullet_.state(part.robot), dof > before.q.size()));
   step.predicted[n] = 1;
-  const MatrixXd S = inverse.solve(inverse.solve(bullet_.response(part.robot, dt)).transpose());
-  const double heavy = robots_.exchange.schedule == Schedule::inertial ? 1 : kHeavy;
-  const MatrixXd inertia = heavy * dt * dt * S.llt().solve(MatrixXd::Identity(n, n));
-  step.inertia.topLeftCorner(n, n) = (inertia + inertia.transpose()) / 2;
+  const auto inertia = [&](bool drives) -> MatrixXd {
+    const MatrixXd S = inverse.solve(inverse.solve(bullet_.response(part.robot, dt, drives)).transpose());
+    const MatrixXd full = dt * dt * S.llt().solve(MatrixXd::Identity(n, n));
+    return (full + full.transpose()) / 2;
+  };
+  step.inertia.topLeftCorner(n, n) = inertia(true);
+  if (robots_.exchange.schedule == Schedule::inertial) {
+    add_drives(part, inertia(false), T, step);
+  } else {
+    step.inertia *= kHeavy;
+  }
   double gap2 = 0;
   for (std::size_t l = 0; l < part.links.size(); ++l) {
     const tape::Pose& now = state.bodies[static_cast<std::size_t>(part.bodies[l])].pose;
@@ -108,8 +142,8 @@ tape::StepReport CoupledStepper::step(tape::State& state, const tape::Exchange&)
   const double dt = world_.setup.scene.time.dt;
   report_ = {};
   restore(state);
-  for (std::size_t r = 0; r < robots_.robots.size(); ++r)
-    bullet_.command(static_cast<int>(r), commands_at(robots_.robots[r], (state.step + 1) * dt));
+  see_to_pinching(state);
+  command(state);
   const robot::Snapshot start = bullet_.save();
   tape::State next = state;
   tape::StepReport report = robots_.exchange.schedule == Schedule::iterated ? step_in_turns(next, dt, start) : step_once(next, dt, start);
@@ -124,10 +158,34 @@ tape::StepReport CoupledStepper::step(tape::State& state, const tape::Exchange&)
 
 void CoupledStepper::restore(const tape::State& state) {
   if (state.outside.empty()) return bullet_.restore(start_);
-  if (state.outside.size() != start_.numbers.size())
-    throw tape::InputError("the state holds other robots than the scene: " + std::to_string(state.outside.size()) + " numbers, not " +
-                           std::to_string(start_.numbers.size()));
-  bullet_.restore({state.outside});
+  try {
+    bullet_.restore({state.outside});
+  } catch (const robot::InputError& e) {
+    throw tape::InputError(std::string("the state holds other robots than the scene: ") + e.what());
+  }
+}
+
+/// Tells the drives where to be at the end of the step.
+void CoupledStepper::command(const tape::State& state) {
+  if (scripts_.empty() || events_ != state.events) {
+    scripts_.clear();
+    for (const RobotPart& robot : robots_.robots) scripts_.emplace_back(robot, state.events);
+    events_ = state.events;
+  }
+  for (std::size_t r = 0; r < scripts_.size(); ++r)
+    bullet_.command(static_cast<int>(r), scripts_[r].commands_at((state.step + 1) * world_.setup.scene.time.dt));
+}
+
+/// Pairs that may have tape between them touch on the tape side, all others in Bullet.
+void CoupledStepper::see_to_pinching(const tape::State& state) {
+  const std::vector<LinkPair> pairs = pinching_.find(state, bullet_);
+  for (const LinkPair& p : pinching_.candidates()) bullet_.set_contact(p.robot_a, p.link_a, p.robot_b, p.link_b, true);
+  pinched_.clear();
+  for (const LinkPair& p : pairs) {
+    bullet_.set_contact(p.robot_a, p.link_a, p.robot_b, p.link_b, false);
+    pinched_.push_back(p.bodies);
+  }
+  report_.pinching = static_cast<int>(pinched_.size());
 }
 
 void CoupledStepper::advance_bullet(const robot::Snapshot& start, double dt, const std::vector<robot::VecX>& tau) {
@@ -145,13 +203,15 @@ std::vector<RobotState> CoupledStepper::robot_states() const {
 tape::StepReport CoupledStepper::step_once(tape::State& state, double dt, const robot::Snapshot& start) {
   const std::vector<RobotState> before = robot_states();
   advance_bullet(start, dt, {});
-  tape::Exchange exchange;
+  tape::Exchange exchange{.articulations = {}, .pinching = pinched_};
   for (const Part& part : parts_)
     exchange.articulations.push_back(predicted(part, state, before[static_cast<std::size_t>(part.robot)], dt));
   std::vector<robot::Vec3> alone = momenta();
   tape::StepReport report = tape_->step(state, exchange);
   if (!report.ok || robots_.exchange.schedule == Schedule::kinematic) return report;
-  advance_bullet(start, dt, forces(report));
+  const std::vector<robot::VecX> tau = forces(report);
+  const auto pushes = [](const robot::VecX& f) { return f.size() > 0 && !f.isZero(0); };
+  if (std::ranges::any_of(tau, pushes)) advance_bullet(start, dt, tau);  // else it has made the step already
   book_momentum(report, alone, dt);
   return report;
 }
@@ -167,7 +227,7 @@ tape::StepReport CoupledStepper::step_in_turns(tape::State& state, double dt, co
     report_.iterations = turn;
     advance_bullet(start, dt, tau);
     state = first;
-    tape::Exchange exchange;
+    tape::Exchange exchange{.articulations = {}, .pinching = pinched_};
     for (const Part& part : parts_)
       exchange.articulations.push_back(predicted(part, state, before[static_cast<std::size_t>(part.robot)], dt));
     report = tape_->step(state, exchange);

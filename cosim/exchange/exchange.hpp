@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "cosim/exchange/robots.hpp"
+#include "cosim/exchange/pinching.hpp"
 #include "tape/step/stepper.hpp"
 
 namespace cosim {
@@ -13,6 +13,7 @@ struct ExchangeReport {
   double bullet_ms = 0;                 ///< in Bullet, both passes
   double momentum_given = 0;            ///< [N s] sum over links of the magnitude of what the tape side gave them
   std::optional<double> residual = {};  ///< [1] what of it robots with a free base did not receive; none: none was touched
+  int pinching = 0;                     ///< pairs of links that touch in the tape solver
   double mismatch = 0;                  ///< [m] farthest that a link's frame stands on the tape side from where Bullet has it
 };
 
@@ -39,10 +40,13 @@ class CoupledStepper final : public tape::Stepper {
     std::vector<int> links, bodies;
   };
   tape::ArticulationStep predicted(const Part& part, const tape::State& state, const robot::RobotState& before, double dt) const;
+  void add_drives(const Part& part, const Eigen::MatrixXd& bare, const Eigen::MatrixXd& T, tape::ArticulationStep& step) const;
   std::vector<robot::VecX> forces(const tape::StepReport& report) const;
   std::vector<robot::RobotState> robot_states() const;
   std::vector<robot::Vec3> momenta() const;
   void restore(const tape::State& state);
+  void command(const tape::State& state);
+  void see_to_pinching(const tape::State& state);
   void advance_bullet(const robot::Snapshot& start, double dt, const std::vector<robot::VecX>& tau);
   tape::StepReport step_once(tape::State& state, double dt, const robot::Snapshot& start);
   tape::StepReport step_in_turns(tape::State& state, double dt, const robot::Snapshot& start);
@@ -54,7 +58,11 @@ class CoupledStepper final : public tape::Stepper {
   std::unique_ptr<tape::Stepper> tape_;
   robot::World bullet_;
   robot::Snapshot start_;
+  Pinching pinching_;
+  std::vector<tape::Index2> pinched_;  // pairs of bodies, in this step
   std::vector<Part> parts_;
+  std::vector<double> events_;        // that scripts_ know of
+  std::vector<RobotScript> scripts_;  // [robots]
   ExchangeReport report_;
 };
 

@@ -1,23 +1,50 @@
 #include "cosim/exchange/robots.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "cosim/exchange/exchange.hpp"
 #include "cosim/exchange/proxy.hpp"
 
 namespace cosim {
-std::vector<robot::JointCommand> commands_at(const RobotPart& robot, double time) {
+namespace {
+constexpr double kNever = std::numeric_limits<double>::infinity();
+}
+RobotScript::RobotScript(const RobotPart& robot, const std::vector<double>& events) : robot_(&robot) {
+  for (const RobotMotion& motion : robot.motions) {
+    const double start = motion.start.at(events);
+    if (!std::isfinite(start)) continue;
+    Motion known{motion.plan(told_at(start)), motion.until < 0 ? kNever : tape::Moment(0, motion.until).at(events), {}};
+    const double planned = known.way.end() - known.way.start(), pace = planned > 0 ? motion.duration / planned : 1;
+    for (double& time : known.way.times) time = start + pace * (time - known.way.start());
+    for (const std::string& joint : known.way.joints) known.joints.push_back(robot.model->find_joint(joint));
+    motions_.push_back(std::move(known));
+  }
+}
+
+std::vector<robot::JointCommand> RobotScript::commands_at(double time) const {
   std::vector<robot::JointCommand> commands;
-  for (Eigen::Index k = 0; k < robot.start.size(); ++k)
+  for (Eigen::Index k = 0; k < robot_->start.size(); ++k)
     commands.push_back(
-        {robot::JointCommand::Kind::position, robot.start[k], 0, robot.push.empty() ? 0 : robot.push[static_cast<std::size_t>(k)]});
-  for (const robot::JointTrajectory& motion : robot.motions) {
-    if (time < motion.start()) continue;
-    const robot::JointTrajectory::Point at = motion.at(time);
+        {robot::JointCommand::Kind::position, robot_->start[k], 0, robot_->push.empty() ? 0 : robot_->push[static_cast<std::size_t>(k)]});
+  for (const Motion& motion : motions_) {
+    if (time < motion.way.start()) continue;
+    const robot::JointTrajectory::Point at = motion.way.at(std::min(time, motion.until));
     for (std::size_t k = 0; k < motion.joints.size(); ++k) {
-      robot::JointCommand& command = commands[static_cast<std::size_t>(robot.model->find_joint(motion.joints[k]))];
-      command.position = at.q[static_cast<Eigen::Index>(k)], command.velocity = at.v[static_cast<Eigen::Index>(k)];
+      robot::JointCommand& command = commands[static_cast<std::size_t>(motion.joints[k])];
+      command.position = at.q[static_cast<Eigen::Index>(k)],
+      command.velocity = time < motion.until ? at.v[static_cast<Eigen::Index>(k)] : 0;
     }
   }
   return commands;
+}
+
+robot::VecX RobotScript::told_at(double time) const {
+  robot::VecX q(robot_->start.size());
+  const std::vector<robot::JointCommand> commands = commands_at(time);
+  for (std::size_t k = 0; k < commands.size(); ++k) q[static_cast<Eigen::Index>(k)] = commands[k].position;
+  return q;
 }
 
 std::string body_name(const RobotPart& robot, int link) {
@@ -37,6 +64,7 @@ void add_links(const RobotScene& robots, tape::Scene& scene) {
       body.motion = link == 0 && part.params.fixed_base ? tape::Motion::fixed : tape::Motion::linked;
       body.pose = to_tape(world.link_pose(static_cast<int>(r), link));
       body.material = part.material;
+      body.outside = true;
       body.xi = part.xi;
       if (body.motion == tape::Motion::linked) articulation.links.push_back(body.name);
       scene.bodies.push_back(std::move(body));
@@ -52,7 +80,7 @@ robot::World make_world(const RobotScene& robots) {
     robot::VecX v = robot::VecX::Zero(world.dof(r));
     if (!part.params.fixed_base) v.head<3>() = part.velocity;
     world.set_state(r, {part.params.X_WB, part.start, v});
-    world.command(r, commands_at(part, 0));
+    world.command(r, RobotScript(part, {}).commands_at(0));
   }
   return world;
 }

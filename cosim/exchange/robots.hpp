@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -6,6 +7,7 @@
 #include "robot/control/trajectory.hpp"
 #include "robot/world/world.hpp"
 #include "tape/core/settings.hpp"
+#include "tape/model/moment.hpp"
 #include "tape/model/scene.hpp"
 
 namespace cosim {
@@ -27,17 +29,25 @@ struct ExchangeParams {
   }
 };
 
+/// A motion of a script. Where it starts from may hang on when it starts; how long it takes does not.
+struct RobotMotion {
+  std::function<robot::JointTrajectory(const robot::VecX& q)> plan;  ///< from what the joints [nj] are told then; its time counts from 0
+  tape::Moment start = 0;
+  double duration = 0;  ///< [s]
+  int until = -1;       ///< event at which it stops before its time; -1: none
+};
+
 /// A robot or a prop of a scene.
 struct RobotPart {
   std::string name;
   std::shared_ptr<const robot::RobotModel> model = {};
   robot::RobotParams params = {};
-  robot::VecX start = {};                            ///< [nj] joint positions
-  std::vector<robot::JointTrajectory> motions = {};  ///< times [s] of the simulation; of two that move a joint, the later one does
-  robot::Vec3 velocity = robot::Vec3::Zero();        ///< [m/s] of a free base at the start
-  std::vector<double> push = {};                     ///< [nj] N m or N that the drives exert beside what they hold, or empty
-  int material = 0;                                  ///< of all its links, index into tape::Scene::materials
-  double xi = 0;                                     ///< [m] half-thickness of their surfaces
+  robot::VecX start = {};                      ///< [nj] joint positions
+  std::vector<RobotMotion> motions = {};       ///< in the order in which they start; of two that move a joint, the later one does
+  robot::Vec3 velocity = robot::Vec3::Zero();  ///< [m/s] of a free base at the start
+  std::vector<double> push = {};               ///< [nj] N m or N that the drives exert beside what they hold, or empty
+  int material = 0;                            ///< of all its links, index into tape::Scene::materials
+  double xi = 0;                               ///< [m] half-thickness of their surfaces
 };
 
 struct RobotScene {
@@ -46,8 +56,25 @@ struct RobotScene {
   std::vector<RobotPart> robots;
 };
 
-/// What the drives of a robot are told at a time: [nj] positions and velocities of its motions, the start where none has begun.
-std::vector<robot::JointCommand> commands_at(const RobotPart& robot, double time);
+/// What the drives of a robot are told, as far as is known when its motions start.
+class RobotScript {
+ public:
+  /// @param events  [s] when each has happened (tape::Moment); motions after those that have not are left out
+  RobotScript(const RobotPart& robot, const std::vector<double>& events);
+  /// [nj] positions and velocities of the motions, the start where none has begun.
+  std::vector<robot::JointCommand> commands_at(double time) const;
+  /// [nj] positions of these.
+  robot::VecX told_at(double time) const;
+
+ private:
+  struct Motion {
+    robot::JointTrajectory way;
+    double until;             // [s]
+    std::vector<int> joints;  // of the model
+  };
+  const RobotPart* robot_;
+  std::vector<Motion> motions_;
+};
 
 /// "robot:link", the body that a link is on the tape side.
 std::string body_name(const RobotPart& robot, int link);

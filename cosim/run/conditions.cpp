@@ -67,6 +67,14 @@ void add_peel_conditions(const World& world, std::vector<Condition>& conditions)
   conditions.push_back(at_most("barrier_energy_per_toughness", given, 0.01));
   conditions.push_back({"samples_in_peel_zone", samples_in_zone, ">= 3", samples_in_zone >= 3});
 }
+/// What the script has waited for, and whether it came or its time was over.
+void add_waits(const World& world, const RunLog& log, std::vector<Condition>& conditions) {
+  for (std::size_t k = 0; k < log.events.size(); ++k) {
+    const Event& event = log.events[k];
+    const Real took = log.end.events[k] - event.start.at(log.end.events);
+    if (std::isfinite(took)) conditions.push_back({to_text(event), took, "before", took < event.timeout - world.setup.scene.time.dt / 2});
+  }
+}
 }  // namespace
 
 Real energy_rise(const RunLog& log) {
@@ -95,6 +103,7 @@ std::vector<Condition> check_conditions(const World& world, const RunLog& log) {
       at_most("energy_rise", energy_rise(log), energy_tolerance(world)),
   };
   add_peel_conditions(world, conditions);
+  add_waits(world, log, conditions);
   return conditions;
 }
 }  // namespace cosim

@@ -133,7 +133,8 @@ FigureValues hub_range(const World& world, const RunLog& log) {
   const std::size_t hub = hub_of(world);
   Real from = 0;
   for (const Grip& grip : world.setup.scene.grips)
-    if (grip.what.object == world.setup.scene.bodies[hub].name && grip.end <= log.end.time) from = std::max(from, grip.end);
+    if (grip.what.object == world.setup.scene.bodies[hub].name && grip.end.at(log.end.events) <= log.end.time)
+      from = std::max(from, grip.end.at(log.end.events));
   Mat3 before = log.start.bodies[hub].pose.rotation;
   Real angle = 0, least = std::numeric_limits<Real>::infinity(), most = -least;
   for (const StepRow& row : log.rows) {
@@ -178,7 +179,8 @@ FigureValues peel_force(const World& world, const RunLog& log) {
   const auto front = [](const StepRow& row) { return row.report.adhesion[0].to; };
   std::vector<Real> forces;
   for (const StepRow& row : log.rows) {
-    const Vec3 moved = grip_offset(scene.grips[g], row.time) - grip_offset(scene.grips[g], row.time - row.report.dt);
+    const Vec3 moved =
+        grip_offset(scene.grips[g], row.time, log.end.events) - grip_offset(scene.grips[g], row.time - row.report.dt, log.end.events);
     if (moved.norm() > 0 && front(row) < front(log.rows.front()) - cell / 2 && row.report.adhesion[0].live > 0)
       forces.push_back(row.report.grip_force[g].dot(moved.normalized()));
   }

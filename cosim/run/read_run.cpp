@@ -4,10 +4,10 @@
 
 namespace cosim {
 RunInput read_run(SceneFile scene) {
-  RunInput input{.file = std::move(scene), .setup = {}, .robots = {}, .record = {}, .figures = {}, .roll_asset = {}};
+  RunInput input{.file = std::move(scene), .setup = {}, .robots = {}, .events = {}, .record = {}, .figures = {}, .roll_asset = {}};
   const SceneFile& file = input.file;
   BothWorlds both = read_worlds(file);
-  input.setup.scene = std::move(both.tape), input.robots = std::move(both.robots);
+  input.setup.scene = std::move(both.tape), input.robots = std::move(both.robots), input.events = std::move(both.events);
   std::vector<std::string> effects;
   for_each_effect([&]<class T>(std::type_identity<T>) {
     effects.emplace_back(T::name);

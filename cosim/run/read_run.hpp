@@ -13,6 +13,7 @@ struct RunInput {
   SceneFile file;
   Setup setup;
   RobotScene robots;
+  std::vector<Event> events;  ///< that the script waits for
   RecordParams record;
   std::vector<std::string> figures;
   bool settle_roll = true;           ///< off: a roll starts as it is wound

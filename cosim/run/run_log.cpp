@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "cosim/run/event_watch.hpp"
 #include "tape/contact/intersection.hpp"
 
 namespace cosim {
@@ -36,7 +37,7 @@ RunLog simulate(const World& world, Stepper& stepper, State& state, const RunOpt
   const auto begin = std::chrono::steady_clock::now();
   const int planned = planned_steps(world.setup.scene);
   const int last = options.max_steps < 0 || options.max_steps > planned - state.step ? planned : state.step + options.max_steps;
-  RunLog log{.start = state};
+  RunLog log{.start = state, .events = options.events};
   EnergyLedger ledger(world);
   RecordClock clock(options.record.rate, state.time);
   record(log, world, state, options);
@@ -53,6 +54,7 @@ RunLog simulate(const World& world, Stepper& stepper, State& state, const RunOpt
       log.failed_step = state.step + 1;
       break;
     }
+    note_events(options.events, world, report, state);
     const EnergyLedger::Entry energy = ledger.after(state, report);
     log.rows.push_back({state.step, state.time, std::move(report), energy});
     if (options.on_step) options.on_step(state, log.rows.back());

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "cosim/run/energy_ledger.hpp"
+#include "cosim/scene/event.hpp"
 #include "tape/step/stepper.hpp"
 
 namespace cosim {
@@ -19,6 +20,7 @@ struct StepRow {
 struct RunLog {
   State start{}, end{};
   std::vector<StepRow> rows{};  ///< of the completed steps
+  std::vector<Event> events{};  ///< that the script waits for; State::events says when they happened
   bool interrupted = false;
   std::string failure{};   ///< why the run stopped before its time; empty if it did not
   int failed_step = -1;    ///< the step that could not be made
@@ -39,6 +41,7 @@ struct RecordParams {
 struct RunOptions {
   int max_steps = -1;  ///< of this call; negative: until the duration of the scene
   RecordParams record{};
+  std::vector<Event> events{};                                  ///< that the script waits for
   std::function<bool()> stop_asked{};                           ///< asked before each step; may be empty
   std::function<void(const State&, const StepRow&)> on_step{};  ///< after each completed step; may be empty
   std::function<void(const State&)> on_record{};                ///< at the start, at the rate asked for, and at the end; may be empty

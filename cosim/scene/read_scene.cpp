@@ -37,9 +37,9 @@ class SceneReader {
     for (const Reader& entry : file_["interfaces"].items()) interface(entry);
     model();
     for (const Reader& entry : file_["axles"].items()) axle(entry);
-    read_script(file_, meshes_, scene_, robots_);
+    std::vector<Event> events = read_script(file_, meshes_, scene_, robots_);
     if (scene_.strips.empty() && scene_.bodies.empty()) file_.root().fail("there is nothing to simulate: neither a strip nor a body");
-    return {std::move(scene_), std::move(robots_)};
+    return {std::move(scene_), std::move(robots_), std::move(events)};
   }
 
  private:

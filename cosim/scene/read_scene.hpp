@@ -1,12 +1,14 @@
 #pragma once
 #include "cosim/exchange/robots.hpp"
+#include "cosim/scene/event.hpp"
 #include "cosim/scene/scene_file.hpp"
 #include "tape/model/scene.hpp"
 
 namespace cosim {
 struct BothWorlds {
   tape::Scene tape;
-  RobotScene robots;  ///< whose links are bodies of the other
+  RobotScene robots;          ///< whose links are bodies of the other
+  std::vector<Event> events;  ///< that the script waits for
 };
 /// Everything of a scene file that these hold: scene, film, time, contact, gravity, seed, strip or strips, roll, bodies, robots, physics,
 /// exchange, materials, interfaces, axles, script. README.md describes them.

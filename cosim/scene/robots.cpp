@@ -1,5 +1,7 @@
 #include "cosim/scene/robots.hpp"
 
+#include <fnmatch.h>
+
 #include <algorithm>
 
 #include "cosim/scene/pose.hpp"
@@ -31,26 +33,62 @@ std::vector<std::string> joint_names(const robot::RobotModel& model) {
   return names;
 }
 
-/// A number for all joints, a list, or a section of joints.
-robot::VecX per_joint(const Reader& section, const robot::RobotModel& model, Real fallback, Range range, const char* unit) {
+/// The joints that a name means; in it a * stands for any text.
+std::vector<Eigen::Index> find_joints(const Reader& section, const std::string& name, const robot::RobotModel& model) {
+  const std::vector<std::string> all = joint_names(model);
+  std::vector<Eigen::Index> found;
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if (fnmatch(name.c_str(), all[k].c_str(), 0) == 0) found.push_back(static_cast<Eigen::Index>(k));
+  if (found.empty()) choose(section, name, all);
+  return found;
+}
+
+robot::HandPostures load_postures(const Reader& asked_by, const std::filesystem::path& scene, const std::string& name) {
+  const std::filesystem::path found = find_file(scene, "robots", name);
+  if (found.empty()) asked_by.fail("no file " + name + " beside the scene, above it, or in data/robots");
+  return at_place(asked_by, [&] { return robot::read_postures(found); });
+}
+std::vector<Eigen::Index> joints_of(const robot::HandPostures& postures, const std::string& prefix, const Reader& asked_by,
+                                    const robot::RobotModel& model) {
+  std::vector<Eigen::Index> joints;
+  for (const std::string& joint : postures.joints_of(prefix))
+    joints.push_back(static_cast<Eigen::Index>(choose(asked_by, joint, joint_names(model))));
+  return joints;
+}
+
+/// A number for all joints, a list, or a section of joints, of which later entries override earlier ones.
+robot::VecX per_joint(const Reader& section, const robot::RobotModel& model, const robot::VecX& fallback, Range range, const char* unit) {
   const auto n = static_cast<Eigen::Index>(model.joints.size());
-  robot::VecX out = robot::VecX::Constant(n, fallback);
+  robot::VecX out = fallback;
   if (section.is_list()) {
     const std::vector<Real> all = section.numbers(model.joints.size(), range, unit);
     out = Eigen::Map<const robot::VecX>(all.data(), n);
   } else if (section.is_map()) {
-    for (const std::string& name : section.keys())
-      out[static_cast<Eigen::Index>(choose(section, name, joint_names(model)))] = section[name].number(range, unit);
+    for (const std::string& name : section.keys()) out(find_joints(section, name, model)).setConstant(section[name].number(range, unit));
   } else if (section) {
     out.setConstant(section.number(range, unit));
   }
   return out;
 }
 
+/// Postures of hands, each under the prefix of its hand's joints; zero where there is none.
+robot::VecX posed(const Reader& postures, const std::filesystem::path& scene, const robot::RobotModel& model) {
+  robot::VecX q = robot::VecX::Zero(static_cast<Eigen::Index>(model.joints.size()));
+  if (!postures) return q;
+  const robot::HandPostures known = load_postures(postures, scene, "hand_postures.yaml");
+  for (const std::string& prefix : postures.keys()) {
+    const robot::VecX angles = at_place(postures[prefix], [&] { return known.angles(model, prefix, postures[prefix].text()); });
+    q(joints_of(known, prefix, postures[prefix], model)) = angles;
+  }
+  return q;
+}
+
 void read_drives(const Reader& drives, RobotPart& part) {
-  const robot::VecX kp = per_joint(drives["kp"], *part.model, 0, Range::non_negative(), "N m/rad or N/m");
-  const robot::VecX kd = per_joint(drives["kd"], *part.model, 0, Range::non_negative(), "N m s/rad or N s/m");
-  const robot::VecX effort = per_joint(drives["effort"], *part.model, std::numeric_limits<Real>::infinity(), Range::positive(), "N m or N");
+  const auto n = static_cast<Eigen::Index>(part.model->joints.size());
+  const robot::VecX none = robot::VecX::Zero(n), unlimited = robot::VecX::Constant(n, std::numeric_limits<Real>::infinity());
+  const robot::VecX kp = per_joint(drives["kp"], *part.model, none, Range::non_negative(), "N m/rad or N/m");
+  const robot::VecX kd = per_joint(drives["kd"], *part.model, none, Range::non_negative(), "N m s/rad or N s/m");
+  const robot::VecX effort = per_joint(drives["effort"], *part.model, unlimited, Range::positive(), "N m or N");
   for (Eigen::Index k = 0; k < kp.size(); ++k) part.params.drives.push_back({kp[k], kd[k], effort[k]});
 }
 
@@ -74,7 +112,8 @@ RobotPart read_robot(const Reader& section, const std::string& name, const Scene
   part.xi = section["xi"].number_or(0, Range::closed(0, 0.01), "m");
   read_drives(section["drives"], part);
   const robot::JointMap map = at_place(section, [&] { return joint_map(*part.model); });
-  const robot::VecX wanted = per_joint(section["joints"], *part.model, 0, kPlace, "rad or m");
+  const robot::VecX wanted =
+      per_joint(section["joints"], *part.model, posed(section["postures"], file.path(), *part.model), kPlace, "rad or m");
   part.start = map.all(map.independent_of(wanted).cwiseMax(map.lower).cwiseMin(map.upper));
   for (Eigen::Index u = 0; section["joints"] && u < map.lower.size(); ++u) {
     const int k = map.independent[static_cast<std::size_t>(u)];
@@ -85,53 +124,69 @@ RobotPart read_robot(const Reader& section, const std::string& name, const Scene
   return part;
 }
 
-/// Where a robot is told to be at a time.
-robot::VecX told(const RobotPart& part, Real time) {
-  robot::VecX q = part.start;
-  const std::vector<robot::JointCommand> commands = commands_at(part, time);
-  for (std::size_t k = 0; k < commands.size(); ++k) q[static_cast<Eigen::Index>(k)] = commands[k].position;
-  return q;
-}
+using Plan = std::function<robot::JointTrajectory(const robot::VecX&)>;
+using Model = std::shared_ptr<const robot::RobotModel>;
 
-robot::JointTrajectory to_joints(const Reader& entry, const RobotPart& part, const robot::VecX& q) {
+Plan to_joints(const Reader& entry, const Model& model) {
   const Reader section = entry["joints"];
   const std::vector<std::string> names = section.keys();
-  robot::VecX from(static_cast<Eigen::Index>(names.size())), to = from;
+  std::vector<Eigen::Index> at;
+  robot::VecX to(static_cast<Eigen::Index>(names.size()));
   for (std::size_t k = 0; k < names.size(); ++k) {
-    const auto i = static_cast<Eigen::Index>(k);
-    from[i] = q[static_cast<Eigen::Index>(choose(section, names[k], joint_names(*part.model)))];
-    to[i] = section[names[k]].number(kPlace, "rad or m");
+    at.push_back(static_cast<Eigen::Index>(choose(section, names[k], joint_names(*model))));
+    to[static_cast<Eigen::Index>(k)] = section[names[k]].number(kPlace, "rad or m");
   }
-  const robot::MotionLimits limits = robot::motion_limits(*part.model, names, 1, kAcceleration);
-  if (const Reader duration = entry["duration"])
-    return robot::trajectory_at(names, {from, to}, {0, duration.number(Range::above(0, kForever), "s")},
-                                {limits.speed, limits.acceleration * 1e6});
-  return robot::trajectory_within(names, {from, to}, limits);
+  const robot::MotionLimits limits = at_place(entry, [&] { return robot::motion_limits(*model, names, 1, kAcceleration); });
+  const Real duration = entry["duration"].number_or(0, Range::above(0, kForever), "s");
+  return [=](const robot::VecX& q) {
+    const robot::VecX from = q(at);
+    if (duration == 0) return robot::trajectory_within(names, {from, to}, limits);
+    return robot::trajectory_at(names, {from, to}, {0, duration}, {limits.speed, limits.acceleration * 1e6});
+  };
 }
 
-robot::JointTrajectory to_posture(const Reader& entry, const SceneFile& file, const RobotPart& part, const robot::VecX& q) {
-  const Reader posture = entry["posture"], from = entry["postures"];
-  const std::filesystem::path found = find_file(file.path(), "robots", from.text_or("hand_postures.yaml"));
-  if (found.empty()) from.fail("no such file beside the scene, above it, or in data/robots");
-  return robot::read_postures(found).move(*part.model, entry["prefix"].text_or(""), q, posture.text(),
-                                          entry["duration"].number_or(0.5, Range::above(0, kForever), "s"));
+Plan to_posture(const Reader& entry, const std::filesystem::path& scene, const Model& model) {
+  const Reader from = entry["postures"];
+  const robot::HandPostures postures = load_postures(from ? from : entry, scene, from.text_or("hand_postures.yaml"));
+  const std::string prefix = entry["prefix"].text_or(""), posture = entry["posture"].text();
+  const Real duration = entry["duration"].number_or(0.5, Range::above(0, kForever), "s");
+  const std::vector<Eigen::Index> at = joints_of(postures, prefix, entry["posture"], *model);
+  return [=](const robot::VecX& q) { return postures.move(*model, prefix, q(at), posture, duration); };
 }
 
-robot::JointTrajectory to_frame(const Reader& entry, const RobotPart& part, const robot::VecX& q) {
-  const Reader name = entry["frame"], by = entry["by"], to = entry["to"];
-  const std::optional<robot::Frame> frame = part.model->find_frame(name.text());
+Plan to_frame(const Reader& entry, const Model& model, const robot::Pose& X_WB) {
+  const Reader name = entry["frame"], by = entry["by"], to = entry["to"], turned = entry["rotation_deg"];
+  const std::optional<robot::Frame> frame = model->find_frame(name.text());
   if (!frame) name.fail("the robot has no link or frame of this name");
   if (by.exists() == to.exists()) entry.fail("needs either by or to");
-  const robot::Pose now = frame_pose(link_poses(*part.model, q, part.params.X_WB), *frame);
-  robot::FrameTarget target{.frame = *frame, .X_WT = now};
-  target.X_WT.translation() = by ? Vec3(now.translation() + by.vector(kPlace, "m")) : to.vector(kPlace, "m");
-  if (const Reader rotation = entry["rotation_deg"]) target.X_WT.linear() = read_rotation(rotation);
+  const Vec3 where = (by ? by : to).vector(kPlace, "m");
+  const std::optional<Mat3> rotation = turned ? std::optional(read_rotation(turned)) : std::nullopt;
   robot::LineLimits limits;
   limits.speed = entry["speed"].number_or(limits.speed, Range::above(0, 1e3), "m/s");
-  const robot::LineMove move = line_move(*part.model, target, q, limits, {}, 100, part.params.X_WB);
-  if (!move.failure.empty())
-    entry.fail("the way cannot be followed beyond " + tape::to_text(100 * move.fraction) + " % of it: " + move.failure);
-  return move.trajectory;
+  return [=, relative = by.exists()](const robot::VecX& q) {
+    robot::FrameTarget target{.frame = *frame, .X_WT = frame_pose(link_poses(*model, q, X_WB), *frame)};
+    target.X_WT.translation() = relative ? Vec3(target.X_WT.translation() + where) : where;
+    if (rotation) target.X_WT.linear() = *rotation;
+    const robot::LineMove move = line_move(*model, target, q, limits, {}, 100, X_WB);
+    if (!move.failure.empty())
+      throw robot::InputError("the way cannot be followed beyond " + tape::to_text(100 * move.fraction) + " % of it: " + move.failure);
+    return move.trajectory;
+  };
+}
+
+Plan along_file(const Reader& entry, const std::filesystem::path& scene, const Model& model) {
+  const Reader trajectory = entry["trajectory"];
+  if (!trajectory) entry.fail("must hold one of joints, posture, frame, trajectory");
+  const auto way =
+      at_place(trajectory, [&] { return robot::read_trajectory(scene.parent_path() / trajectory.text(), *model, joint_names(*model)); });
+  return [=](const robot::VecX&) { return way; };
+}
+
+Plan read_plan(const Reader& entry, const std::filesystem::path& scene, const RobotPart& part) {
+  if (entry["joints"]) return to_joints(entry, part.model);
+  if (entry["posture"]) return to_posture(entry, scene, part.model);
+  if (entry["frame"]) return to_frame(entry, part.model, part.params.X_WB);
+  return along_file(entry, scene, part.model);
 }
 }  // namespace
 
@@ -149,25 +204,24 @@ RobotScene read_robots(const SceneFile& file, const Vec3& gravity, const std::fu
   return scene;
 }
 
-Real read_robot_motion(const Reader& entry, const SceneFile& file, Real start, RobotScene& robots) {
+Lasting add_robot_motion(const Reader& entry, const SceneFile& file, const tape::Moment& start, Real expected,
+                         const std::vector<Real>& events, RobotScene& robots) {
   std::vector<std::string> names;
   for (const RobotPart& part : robots.robots) names.push_back(part.name);
   const Reader name = entry["robot"];
   if (names.empty()) name.fail("the scene has no robots");
   RobotPart& part = robots.robots[choose(name, names)];
-  const robot::VecX q = told(part, start);
-  robot::JointTrajectory motion = at_place(entry, [&] {
-    if (entry["joints"]) return to_joints(entry, part, q);
-    if (entry["posture"]) return to_posture(entry, file, part, q);
-    if (entry["frame"]) return to_frame(entry, part, q);
-    const Reader trajectory = entry["trajectory"];
-    if (!trajectory) entry.fail("must hold one of joints, posture, frame, trajectory");
-    return robot::read_trajectory(file.path().parent_path() / trajectory.text(), *part.model, joint_names(*part.model));
-  });
-  const Real offset = start - motion.start();
-  for (Real& time : motion.times) time += offset;
-  const Real end = motion.end();
-  part.motions.push_back(std::move(motion));
-  return end;
+  const Plan plan = read_plan(entry, file.path(), part);
+  const robot::VecX q = RobotScript(part, events).told_at(expected);
+  const robot::JointTrajectory planned = at_place(entry, [&] { return plan(q); });
+  const auto with_place = [plan, where = entry.where()](const robot::VecX& from) {
+    try {
+      return plan(from);
+    } catch (const robot::InputError& e) {
+      throw tape::InputError(where + ": " + e.what());
+    }
+  };
+  part.motions.push_back({with_place, start, planned.end() - planned.start()});
+  return {part.motions.back().duration, &part.motions.back().until};
 }
 }  // namespace cosim

@@ -10,8 +10,10 @@ namespace cosim {
 namespace {
 using tape::Grip;
 using tape::GripTarget;
+using tape::Moment;
 
-constexpr Real kForever = 1e6;  // [s]
+constexpr Real kForever = 1e6;    // [s]
+constexpr Real kRoundOff = 1e-9;  // [s] of times that are sums
 const Range kTime = Range::closed(0, kForever);
 
 class Compiler {
@@ -21,7 +23,8 @@ class Compiler {
 
   void entry(const Reader& entry) {
     if (!entry.is_map()) entry.fail("must be a section such as {wait: 1}");
-    const Real start = entry["at"].number_or(now_, kTime, "s");
+    const Reader at = entry["at"];
+    const Moment start = at ? Moment(at.number(kTime, "s")) : now_;
     if (entry["grip"]) {
       grip(entry, start);
     } else if (entry["move"]) {
@@ -29,17 +32,60 @@ class Compiler {
     } else if (entry["release"]) {
       release(entry, start);
     } else if (entry["robot"]) {
-      const Real end = read_robot_motion(entry, file_, start, robots_);
-      now_ = entry["wait"].flag_or(true) ? end : start;
+      go_on(entry, start, add_robot_motion(entry, file_, start, nominal(start), nominal_times(), robots_));
+    } else if (const Reader until = entry["wait_until"]) {
+      now_ = {0, event(until, start, entry["timeout"].number(Range::above(0, kForever), "s"))};
     } else if (const Reader wait = entry["wait"]) {
-      now_ = start + wait.number(kTime, "s");
+      now_ = {start.time + wait.number(kTime, "s"), start.after};
     } else {
-      entry.fail("must hold one of grip, move, release, robot, wait");
+      entry.fail("must hold one of grip, move, release, robot, wait, wait_until");
     }
   }
+  std::vector<Event> events() && { return std::move(events_); }
 
  private:
-  void grip(const Reader& entry, Real start) {
+  /// When each event happens if none does before its time is over.
+  std::vector<Real> nominal_times() const {
+    std::vector<Real> times;
+    for (const Event& e : events_) times.push_back(e.start.at(times) + e.timeout);
+    return times;
+  }
+  Real nominal(const Moment& m) const { return m.at(nominal_times()); }
+
+  /// @return its index
+  int event(const Reader& what, const Moment& start, Real timeout) {
+    Event event{.things = {}, .start = start, .timeout = timeout};
+    const auto names = enum_names(Quantity{});
+    std::size_t q = 0;
+    while (q < names.size() && !what[std::string(names[q])]) ++q;
+    if (q == names.size()) what.fail("must hold one of force, height, speed, distance");
+    event.quantity = static_cast<Quantity>(q);
+    const Reader things = what[std::string(names[q])];
+    event.things = things.is_list() ? things.texts() : std::vector<std::string>{things.text()};
+    if (event.things.size() != (event.quantity == Quantity::distance ? 2 : 1))
+      things.fail("a distance is that of two things, the rest of one");
+    try {
+      require_things(event, scene_);
+    } catch (const tape::InputError& e) {
+      things.fail(e.what());
+    }
+    const Reader above = what["above"], below = what["below"];
+    if (above.exists() == below.exists()) what.fail("needs either above or below");
+    event.above = above.exists();
+    event.level = (above ? above : below).number(Range::any(), unit_names(Quantity{})[q]);
+    events_.push_back(std::move(event));
+    return static_cast<int>(events_.size()) - 1;
+  }
+  /// After an entry that takes `duration` [s], or stops before if it says until when.
+  /// @param until  of the move
+  void go_on(const Reader& entry, const Moment& start, const Lasting& lasting) {
+    if (const Reader until = entry["until"]) *lasting.until = event(until, start, lasting.duration);
+    now_ = !entry["wait"].flag_or(true) ? start
+           : *lasting.until < 0         ? Moment(start.time + lasting.duration, start.after)
+                                        : Moment(0, *lasting.until);
+  }
+
+  void grip(const Reader& entry, const Moment& start) {
     Grip grip;
     grip.what = target(entry);
     const Reader name = entry["as"];
@@ -55,7 +101,7 @@ class Compiler {
     now_ = start;
   }
 
-  void move(const Reader& entry, Real start) {
+  void move(const Reader& entry, const Moment& start) {
     const Reader name = entry["move"];
     Grip& grip = held(name, start);
     if (!grip.to.empty()) name.fail("this grip ties to " + grip.to + " and moves with it");
@@ -64,28 +110,30 @@ class Compiler {
     if (speed.exists() == duration.exists()) entry.fail("needs either speed or duration");
     const Real time = speed ? by.norm() / speed.number(Range::above(0, 1e4), "m/s") : duration.number(Range::above(0, kForever), "s");
     if (!(time > 0)) entry["by"].fail("a move with a speed needs a length");
-    if (grip.motion.empty()) grip.motion.push_back({grip.start, Vec3::Zero()});
-    const Grip::Key last = grip.motion.back();
-    if (start < last.time)
-      name.fail("starts at " + tape::to_text(start) + " s, before the move ahead of it ends at " + tape::to_text(last.time) + " s");
-    if (start > last.time) grip.motion.push_back({start, last.offset});
-    grip.motion.push_back({start + time, last.offset + by});
-    now_ = entry["wait"].flag_or(true) ? start + time : start;
+    if (!grip.motion.empty()) {
+      const Grip::Move& last = grip.motion.back();
+      const Real end = nominal(last.start) + last.duration;
+      if (nominal(start) < end - kRoundOff)
+        name.fail("starts at " + tape::to_text(nominal(start)) + " s, before the move ahead of it ends at " + tape::to_text(end) + " s");
+    }
+    grip.motion.push_back({start, time, by});
+    go_on(entry, start, {time, &grip.motion.back().until});
   }
 
-  void release(const Reader& entry, Real start) {
+  void release(const Reader& entry, const Moment& start) {
     held(entry["release"], start).end = start;
     now_ = start;
   }
 
   /// The grip of that name, which must hold at `time`.
-  Grip& held(const Reader& name, Real time) {
+  Grip& held(const Reader& name, const Moment& at) {
+    const Real time = nominal(at);
     std::vector<std::string> names;
     for (const Grip& g : scene_.grips) names.push_back(g.name);
     if (names.empty()) name.fail("no grip has been made yet");
     Grip& grip = scene_.grips[choose(name, names)];
-    if (time < grip.start) name.fail("is gripped at " + tape::to_text(grip.start) + " s only");
-    if (time >= grip.end) name.fail("was released at " + tape::to_text(grip.end) + " s");
+    if (time < nominal(grip.start)) name.fail("is gripped at " + tape::to_text(nominal(grip.start)) + " s only");
+    if (time >= nominal(grip.end)) name.fail("was released at " + tape::to_text(nominal(grip.end)) + " s");
     return grip;
   }
   const Grip* find(const std::string& name) const {
@@ -160,12 +208,16 @@ class Compiler {
   const std::vector<tape::StripMesh>& meshes_;
   tape::Scene& scene_;
   RobotScene& robots_;
-  Real now_ = 0;  // [s]
+  Moment now_;
+  std::vector<Event> events_;
 };
 }  // namespace
 
-void read_script(const SceneFile& file, const std::vector<tape::StripMesh>& meshes, tape::Scene& scene, RobotScene& robots) {
+std::vector<Event> read_script(const SceneFile& file, const std::vector<tape::StripMesh>& meshes, tape::Scene& scene, RobotScene& robots) {
   Compiler compiler(file, meshes, scene, robots);
   for (const Reader& entry : file["script"].items()) compiler.entry(entry);
+  std::vector<Event> events = std::move(compiler).events();
+  scene.events = static_cast<int>(events.size());
+  return events;
 }
 }  // namespace cosim

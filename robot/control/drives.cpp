@@ -80,6 +80,11 @@ bool Drives::update_saturation(const VecX& q, const VecX& v, Real h, bool releas
   return changed;
 }
 
+VecX Drives::limits() const {
+  VecX out(static_cast<Eigen::Index>(gains_.size()));
+  for (std::size_t k = 0; k < gains_.size(); ++k) out[static_cast<Eigen::Index>(k)] = gains_[k].effort;
+  return out;
+}
 VecX Drives::stiffness() const {
   VecX kp = VecX::Zero(static_cast<Eigen::Index>(gains_.size()));
   for (std::size_t k = 0; k < gains_.size(); ++k)

@@ -47,6 +47,7 @@ class Drives {
   /// Stiffness [nj] N m/rad or N/m, and damping [nj], that a small external force meets now: those of saturated joints are zero.
   VecX stiffness() const;
   VecX damping() const;
+  VecX limits() const;  ///< [nj] N m or N: most that each exerts
 
   /// [nj] -1, 0 or 1: the limit at which the drive stands.
   const std::vector<int>& saturation() const { return saturation_; }

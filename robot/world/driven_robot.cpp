@@ -63,8 +63,8 @@ void DrivenRobot::restore(const Real*& n) {
   drives_.set_saturation(saturation);
 }
 
-MatX DrivenRobot::response(Real h, int count) const {
-  const MatX stiffness = on_joints(drives_.stiffness()), damping = on_joints(drives_.damping() + viscous_);
+MatX DrivenRobot::response(Real h, int count, bool drives) const {
+  const MatX stiffness = on_joints(drives * drives_.stiffness()), damping = on_joints(drives * drives_.damping() + viscous_);
   const auto reduced = [&](const MatX& A) -> MatX { return motions_.transpose() * A * motions_; };
   const MatX S = held_force_response(reduced(body_.mass_matrix()), reduced(stiffness), reduced(damping), h, count);
   return motions_ * S * motions_.transpose();

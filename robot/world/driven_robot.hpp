@@ -23,7 +23,7 @@ class DrivenRobot {
   /// [dof x k] motions that mimicking joints leave.
   const MatX& motions() const { return motions_; }
   /// d q_end / d tau over count substeps.
-  MatX response(Real h, int count) const;
+  MatX response(Real h, int count, bool drives) const;
 
   /// Configuration, velocity, commands and active set as numbers, to the bit.
   void save(std::vector<Real>& numbers) const;

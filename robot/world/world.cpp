@@ -73,8 +73,16 @@ void World::set_friction(int robot, int link, Real mu) {
   impl_->at(robot).set_friction(link, mu);
 }
 
+namespace {
+std::pair<LinkId, LinkId> ordered(int robot_a, int link_a, int robot_b, int link_b) {
+  return std::minmax(LinkId(robot_a, link_a), LinkId(robot_b, link_b));
+}
+}  // namespace
+bool World::may_touch(int robot_a, int link_a, int robot_b, int link_b) const {
+  return !impl_->physics.apart.contains(ordered(robot_a, link_a, robot_b, link_b));
+}
 void World::set_contact(int robot_a, int link_a, int robot_b, int link_b, bool on) {
-  const std::pair<LinkId, LinkId> pair = std::minmax(LinkId(robot_a, link_a), LinkId(robot_b, link_b));
+  const std::pair<LinkId, LinkId> pair = ordered(robot_a, link_a, robot_b, link_b);
   if (on)
     impl_->physics.apart.erase(pair);
   else
@@ -147,15 +155,16 @@ VecX World::acceleration(int robot, const VecX& tau) const {
 }
 
 MatX World::motions(int robot) const { return impl_->at(robot).motions(); }
-MatX World::response(int robot, Real dt) const {
+MatX World::response(int robot, Real dt, bool drives) const {
   const int count = substeps(dt, impl_->params.substep);
-  return impl_->at(robot).response(dt / count, count);
+  return impl_->at(robot).response(dt / count, count, drives);
 }
 
 VecX World::drive_effort(int robot) const {
   const VecX& impulse = impl_->at(robot).drive_impulse;
   return impl_->last_dt > 0 ? VecX(impulse / impl_->last_dt) : VecX::Zero(impulse.size());
 }
+VecX World::effort_limit(int robot) const { return impl_->at(robot).drives().limits(); }
 std::vector<int> World::saturation(int robot) const { return impl_->at(robot).drives().saturation(); }
 std::vector<Contact> World::contacts() const { return impl_->contacts; }
 }  // namespace robot

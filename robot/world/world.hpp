@@ -64,6 +64,7 @@ class World {
   void set_friction(int robot, int link, Real mu);
   /// Whether this pair of links may touch in Bullet: not, where another solver sees to it.
   void set_contact(int robot_a, int link_a, int robot_b, int link_b, bool on);
+  bool may_touch(int robot_a, int link_a, int robot_b, int link_b) const;
 
   /// Advances by dt [s] in equal substeps.
   /// @param tau  [robots] external force on each [dof], held over dt; an empty one, or an empty list, is none
@@ -87,10 +88,13 @@ class World {
   MatX motions(int robot) const;
   /// d(coordinates after dt)/d(force held over dt) [dof x dof] through the drives' substeps, the mass matrix frozen; of rank k.
   /// Contacts, limits and Coulomb friction do not enter.
-  MatX response(int robot, Real dt) const;
+  /// @param drives  false: as if all drives stood at their limits
+  MatX response(int robot, Real dt, bool drives = true) const;
 
   /// [nj] N m or N: of the drives, mean over the last step.
   VecX drive_effort(int robot) const;
+  /// [nj] N m or N: most that each drive exerts; infinite where neither the model nor its gains name a limit.
+  VecX effort_limit(int robot) const;
   /// [nj] -1, 0 or 1: the effort limit at which each drive stood in the last substep.
   std::vector<int> saturation(int robot) const;
   std::vector<Contact> contacts() const;

@@ -8,18 +8,21 @@ namespace tape {
 /// What is known of an articulation for one step: a tree of links that somebody else simulates, and that the tape side may push off its
 /// course. Its coordinates q [m] count from the start of the step; over the step the frame of link l moves by v = J_v q [m] and turns by
 /// the rotation vector w = J_w q [rad] in the world.
-/// Kinetic term: 1/2 (q - predicted)' inertia (q - predicted) / dt^2, where the inertia is that which a force held over the step meets:
-/// dt^2 S^-1 with the response S = dq/df of links and drives together (design, part 9).
+/// Kinetic term, with e = q - predicted:
+///   1/2 e' inertia e / dt^2 + sum over k of phi_k(e_k),   phi_k' = drive_k e_k / dt^2, but not below least_k nor above most_k.
+/// inertia + diag(drive) is what a force held over the step meets: dt^2 S^-1 with the response S = dq/df of links and drives together
+/// (design, part 9). A drive that comes to its limit pushes on with that: its potential goes on linearly.
 struct ArticulationStep {
-  Eigen::VectorXd predicted;              ///< [m] change of q over the step when nothing on the tape side exerts a force
-  Eigen::MatrixXd inertia;                ///< [m, m] symmetric positive definite
-  std::vector<Eigen::MatrixXd> jacobian;  ///< [links][6, m] J_v, then J_w
+  Eigen::VectorXd predicted;                          ///< [m] change of q over the step when nothing on the tape side exerts a force
+  Eigen::MatrixXd inertia;                            ///< [m, m] symmetric positive definite
+  std::vector<Eigen::MatrixXd> jacobian;              ///< [links][6, m] J_v, then J_w
+  Eigen::VectorXd drive = {}, least = {}, most = {};  ///< [m] or empty: none; least <= 0 <= most
 };
 
 /// What the tape side is told before a step about what somebody else simulates.
 struct Exchange {
   std::vector<ArticulationStep> articulations;  ///< [Scene::articulations]
-  std::vector<Index2> pinching;                 ///< pairs of bodies, linked or fixed, that touch here in this step, not elsewhere
+  std::vector<Index2> pinching;                 ///< pairs of bodies outside that touch here in this step, not there
 };
 
 /// Force and torque on a link, the torque about the origin of its frame.

@@ -20,6 +20,7 @@ struct SurfaceView {
   Span<const int> lead;     ///< [frames] vertex that the frame goes with, and turns with if a body carries it; none for the world
   Span<const char> member;  ///< [nv] of a cluster
   Span<const char> apart;   ///< [objects objects] 1: never a pair; empty: all may be
+  Span<const char> shuns;   ///< [objects] 1: kept apart from all that is outside; empty: none is
   int objects, materials;
   Real dhat;   ///< [m] reach of vertex-triangle pairs beyond xi
   Real guard;  ///< [m] reach of the barrier of edge-edge pairs and between a rim and an open surface
@@ -32,6 +33,7 @@ struct SurfaceView {
   TAPE_HD bool edge_sleeps(int e) const { return edge_carrier[e] >= 0 && member[edges[e].v[0]] != 0; }
   /// Whether what two vertices belong to is kept apart by somebody else.
   TAPE_HD bool kept_apart(int v, int w) const { return apart.size > 0 && apart[vertices[v].object * objects + vertices[w].object] != 0; }
+  TAPE_HD bool shuns_outside(int v) const { return shuns.size > 0 && shuns[vertices[v].object] != 0; }
   TAPE_HD int interface(int v, int w) const { return vertices[v].material * materials + vertices[w].material; }
   /// The pair of vertex v and triangle t with its constants.
   TAPE_HD ContactPair vertex_triangle(int v, int t) const {
@@ -239,18 +241,75 @@ struct BoxTriangles {
   }
 };
 
+/// Objects that may touch another one, or themselves, and the primitives of these: all others need not be looked at.
+struct BoxObjects {
+  SurfaceView s;
+  Sight sight;
+  Span<const int> first;  ///< [objects + 1] vertex of each object
+  Span<Box> boxes;
+  TAPE_HD void operator()(int o) const {
+    if (first[o] == first[o + 1]) return;
+    Box box = sight.box(s, first[o]);
+    for (int v = first[o] + 1; v < first[o + 1]; ++v) box = joined(box, sight.box(s, v));
+    boxes[o] = box;
+  }
+};
+struct FindCompany {
+  SurfaceView s;
+  Span<const int> first;
+  Span<const char> always;  ///< [objects] 1: touches itself, or is seen from a frame
+  Span<const Box> boxes;
+  Span<int> company;  ///< [objects] 0 or 1
+  TAPE_HD bool fixed(int o) const { return s.vertex_carrier[first[o]] == kFixed; }
+  TAPE_HD bool near(int o, int p) const {
+    if (first[p] == first[p + 1] || (fixed(o) && fixed(p))) return false;
+    if (s.apart.size > 0 && s.apart[o * s.objects + p] != 0) return false;
+    return (boxes[o].low.array() <= boxes[p].high.array()).all() && (boxes[p].low.array() <= boxes[o].high.array()).all();
+  }
+  TAPE_HD void operator()(int o) const {
+    company[o] = always[o];
+    for (int p = 0; p < s.objects && company[o] == 0 && first[o] < first[o + 1]; ++p)
+      if (p != o && near(o, p)) company[o] = 1;
+  }
+};
+enum class Part { vertex, edge, triangle };
+struct FlagCompany {
+  SurfaceView s;
+  Part part;
+  Span<const int> list, company;
+  Span<int> flag;  ///< [list + 1], the last stays 0
+  TAPE_HD void operator()(int k) const {
+    flag[k] = 0;
+    if (k == list.size) return;
+    const int id = list[k], v = part == Part::vertex ? id : part == Part::edge ? s.edges[id].v[0] : s.triangles[id].v[0];
+    flag[k] = company[s.vertices[v].object];
+  }
+};
+/// What is flagged, in its order.
+template <class T>
+struct KeepFlagged {
+  Span<const T> found;
+  Span<const int> offset;  ///< scanned flags
+  Span<T> kept;
+  TAPE_HD void operator()(int i) const {
+    if (offset[i + 1] > offset[i]) kept[offset[i]] = found[i];
+  }
+};
+
 /// Where pairs are looked for. What follows frames is seen from its own, what does not from the world; and the first is seen from the
 /// world too, for pairs with things that do not follow the same frame. What sleeps in a cluster never pairs with what sleeps there.
 struct Trees {
   TreeView own;        ///< of what follows a frame and is awake, as its frame sees it
   TreeView asleep;     ///< of what sleeps, and of what did when the tree was planted, where it is at home
   TreeView rest;       ///< of what follows none
+  TreeView outside;    ///< of what follows none and somebody else keeps apart from its like
   TreeView followers;  ///< of what follows a frame, as the world sees it; empty if everything follows one frame, or nothing does
   /// Calls f(id, whether it follows the same frame) for what meets the boxes of one that follows `frame`.
+  /// @param shuns   whether it is kept apart from all that is outside
   /// @param sleeps  whether a primitive of this kind does, now
   template <class Sleeps, class F>
-  TAPE_HD void visit(int frame, bool awake, const Lanes& own_box, const Lanes& asleep_box, const Lanes& world_box, const Sleeps& sleeps,
-                     F&& f) const {
+  TAPE_HD void visit(int frame, bool awake, bool shuns, const Lanes& own_box, const Lanes& asleep_box, const Lanes& world_box,
+                     const Sleeps& sleeps, F&& f) const {
     if (frame != kWorld && awake) {
       own.visit(own_box, [&](int id) { f(id, true); });
       asleep.visit(asleep_box, [&](int id) {
@@ -258,6 +317,7 @@ struct Trees {
       });
     }
     rest.visit(world_box, [&](int id) { f(id, frame == kWorld); });
+    if (!shuns) outside.visit(world_box, [&](int id) { f(id, frame == kWorld); });
     followers.visit(world_box, [&](int id) { f(id, false); });
   }
 };
@@ -303,7 +363,7 @@ struct VertexQuery {
     };
     const Lanes own_box = box(nearness.own, frame != kWorld), world_box = box(nearness.world, nearness.world.trust.size > 0);
     const auto sleeps = [&](int t) { return s.triangle_sleeps(t); };
-    trees.visit(frame, s.member[v] == 0, own_box, own_box, world_box, sleeps, [&](int t, bool together) {
+    trees.visit(frame, s.member[v] == 0, s.shuns_outside(v), own_box, own_box, world_box, sleeps, [&](int t, bool together) {
       if (nearness.vertex_triangle(v, t, together)) f(t);
     });
   }
@@ -343,7 +403,7 @@ struct SampleQuery {
     const auto box = [&](const Vec3& at) { return query_box(inflated(Box{at, at}, s.xi(a) + s.dhat / 2), 0, carrier == kFixed); };
     const Lanes own_box = box(seen);
     const auto sleeps = [&](int t) { return s.triangle_sleeps(t); };
-    trees.visit(frame, true, own_box, own_box, box(point), sleeps, [&](int t, bool together) {
+    trees.visit(frame, true, false, own_box, own_box, box(point), sleeps, [&](int t, bool together) {
       const SurfaceTriangle& b = s.triangles[t];
       if (together != (frame == s.vertex_frame[b.v[0]])) return;
       if (carrier != kFree && carrier == s.triangle_carrier[t]) return;
@@ -372,14 +432,15 @@ struct EdgeQuery {
     const Lanes own_box = box(nearness.own, i + 1, frame != kWorld), asleep_box = box(nearness.own, 0, frame != kWorld);
     const Lanes world_box = box(nearness.world, i + 1, nearness.world.trust.size > 0);
     const auto sleeps = [&](int e) { return s.edge_sleeps(e); };
-    trees.visit(frame, !s.edge_sleeps(i), own_box, asleep_box, world_box, sleeps, [&](int j, bool together) {
-      const Sight& sight = nearness.of(together, frame);
-      const EdgeShape &a = sight.edges[i], &b = sight.edges[j];
-      if (together != (frame == b.frame)) return;
-      if (a.v[0] == b.v[0] || a.v[0] == b.v[1] || a.v[1] == b.v[0] || a.v[1] == b.v[1]) return;
-      if ((carrier != kFree && carrier == b.carrier) || s.kept_apart(a.v[0], b.v[0])) return;
-      if (nearness.agree(together, frame, [&](const Sight& from) { return near(from.edges[i], from.edges[j]); })) f(j);
-    });
+    trees.visit(frame, !s.edge_sleeps(i), s.shuns_outside(s.edges[i].v[0]), own_box, asleep_box, world_box, sleeps,
+                [&](int j, bool together) {
+                  const Sight& sight = nearness.of(together, frame);
+                  const EdgeShape &a = sight.edges[i], &b = sight.edges[j];
+                  if (together != (frame == b.frame)) return;
+                  if (a.v[0] == b.v[0] || a.v[0] == b.v[1] || a.v[1] == b.v[0] || a.v[1] == b.v[1]) return;
+                  if ((carrier != kFree && carrier == b.carrier) || s.kept_apart(a.v[0], b.v[0])) return;
+                  if (nearness.agree(together, frame, [&](const Sight& from) { return near(from.edges[i], from.edges[j]); })) f(j);
+                });
   }
   TAPE_HD static bool near(const EdgeShape& a, const EdgeShape& b) {
     const Vec3 offset = a.middle - b.middle, across = a.half.cross(b.half);
@@ -443,14 +504,6 @@ struct FlagUnbonded {
   Span<int> flag;  ///< [found + 1], the last stays 0
   TAPE_HD void operator()(int i) const {
     flag[i] = i < found.size && (found[i].triangle < 0 || !holds(bonded, found[i].name().key())) ? 1 : 0;
-  }
-};
-struct KeepFlagged {
-  Span<const ContactPair> found;
-  Span<const int> offset;  ///< scanned flags
-  Span<ContactPair> pairs;
-  TAPE_HD void operator()(int i) const {
-    if (offset[i + 1] > offset[i]) pairs[offset[i]] = found[i];
   }
 };
 struct Fill {

@@ -68,6 +68,9 @@ class ContactSearch {
   };
   void resize(Seen& seen) const;
   void look(const PathView& paths, Real margin);
+  void find_company();
+  /// What looks for pairs.
+  const detail::Primitives& in_view() const { return surface_.alone ? surface_.followers : in_company_.everything; }
   template <class F>
   void query(const F& f);
   void find_frames(const PathView& paths);
@@ -82,7 +85,12 @@ class ContactSearch {
   Buffer<Pose> frame_origin_;  ///< [frames] at the rebuild
   Buffer<FramePath> frames_;   ///< [frames]
   Seen own_, world_;           ///< what follows a frame from there; all from the world, where that matters
-  Planted own_trees_, asleep_trees_, rest_trees_, follower_trees_;
+  Buffer<Box> object_boxes_;   ///< [objects]
+  Buffer<int> company_;        ///< [objects] 1: it may touch another one
+  struct {
+    detail::Primitives everything, rest, outside, followers;
+  } in_company_;  ///< of what is seen from the world
+  Planted own_trees_, asleep_trees_, rest_trees_, outside_trees_, follower_trees_;
   Buffer<Lanes> boxes_;
   detail::Hits vertex_hits_, sleeper_hits_, edge_hits_;
   Buffer<VertexTriangle> bonded_names_;

@@ -29,7 +29,7 @@ inline void ContactSearch::set_carriage(const SurfaceCarriage& carriage) {
 }
 
 inline void ContactSearch::set_apart(const std::vector<char>& apart) {
-  surface_.apart.upload(apart);
+  surface_.set_apart(apart);
   forget();
 }
 
@@ -62,7 +62,7 @@ inline void ContactSearch::find_frames(const PathView& paths) {
 inline detail::SampleQuery ContactSearch::samples(const PathView& paths) {
   find_frames(paths);
   const detail::Trees trees{own_trees_.triangles.view(), asleep_trees_.triangles.view(), rest_trees_.triangles.view(),
-                            follower_trees_.triangles.view()};
+                            outside_trees_.triangles.view(), follower_trees_.triangles.view()};
   return {surface_.view(), trees, frames_.span(), paths.x};
 }
 
@@ -102,23 +102,51 @@ inline void ContactSearch::look(const PathView& paths, Real margin) {
   trust(own_, surface_.followers, frames_.span());
   plant(surface_.followers, own_, false, own_trees_);
   if (surface_.alone) {
-    world_ = {}, rest_trees_ = {}, follower_trees_ = {};
+    world_ = {}, rest_trees_ = {}, outside_trees_ = {}, follower_trees_ = {};
     return;
   }
   resize(world_);
-  trust(world_, surface_.everything, {});
-  plant(surface_.rest, world_, false, rest_trees_);
-  plant(surface_.all_followers, world_, false, follower_trees_);
+  parallel_for(surface_.everything.vertices.size(),
+               detail::MakeTrust{{s, paths, {}}, margin, surface_.everything.vertices.span(), world_.trust.span()});
+  find_company();
+  make_shapes(in_company_.everything, world_);
+  plant(in_company_.rest, world_, false, rest_trees_);
+  plant(in_company_.outside, world_, false, outside_trees_);
+  plant(in_company_.followers, world_, false, follower_trees_);
+}
+
+/// Lists what the objects have that may touch another one.
+inline void ContactSearch::find_company() {
+  const detail::SurfaceView s = surface_.view();
+  object_boxes_.resize(s.objects), company_.resize(s.objects);
+  const Span<const int> first = surface_.first_vertex.span();
+  parallel_for(s.objects, detail::BoxObjects{s, world_.view(), first, object_boxes_.span()});
+  parallel_for(s.objects, detail::FindCompany{s, first, surface_.always.span(), object_boxes_.span(), company_.span()});
+  const auto list = [&](detail::Part part, const Buffer<int>& all, Buffer<int>& out) {
+    kept_.resize(all.size() + 1);
+    parallel_for(kept_.size(), detail::FlagCompany{s, part, all.span(), company_.span(), kept_.span()});
+    out.resize(exclusive_scan(kept_.span()));
+    parallel_for(all.size(), detail::KeepFlagged<int>{all.span(), kept_.span(), out.span()});
+  };
+  const auto lists = [&](const detail::Primitives& all, detail::Primitives& out) {
+    list(detail::Part::vertex, all.vertices, out.vertices);
+    list(detail::Part::edge, all.edges, out.edges);
+    list(detail::Part::triangle, all.triangles, out.triangles);
+  };
+  lists(surface_.everything, in_company_.everything);
+  lists(surface_.rest, in_company_.rest);
+  lists(surface_.outside, in_company_.outside);
+  lists(surface_.all_followers, in_company_.followers);
 }
 
 /// After a look: calls f with what asks for pairs of vertices, of what sleeps and of edges, and how many each finds.
 template <class F>
 void ContactSearch::query(const F& f) {
   const auto trees = [&](BoxTree Planted::*kind) {
-    return detail::Trees{(own_trees_.*kind).view(), (asleep_trees_.*kind).view(), (rest_trees_.*kind).view(),
+    return detail::Trees{(own_trees_.*kind).view(), (asleep_trees_.*kind).view(), (rest_trees_.*kind).view(), (outside_trees_.*kind).view(),
                          (follower_trees_.*kind).view()};
   };
-  const detail::Primitives& seen = surface_.in_view();
+  const detail::Primitives& seen = in_view();
   const detail::Nearness nearness{surface_.view(), own_.view(), world_.view()};
   const detail::VertexQuery vertices{nearness, trees(&Planted::triangles), seen.vertices.span()};
   const detail::SleeperQuery sleepers{nearness, asleep_trees_.vertices.view(), surface_.followers.triangles.span()};
@@ -135,7 +163,7 @@ inline bool ContactSearch::within(const PathView& paths, Real margin, int most) 
   query([&](const auto&, const auto&, const auto&, long long of_vertices, long long of_sleepers, long long of_edges) {
     found = of_vertices + of_sleepers + of_edges;
   });
-  const detail::Primitives& seen = surface_.in_view();
+  const detail::Primitives& seen = in_view();
   return found <= static_cast<long long>(most) * (seen.vertices.size() + seen.edges.size());
 }
 
@@ -170,7 +198,7 @@ inline void ContactSearch::drop_bonded() {
   const int left = exclusive_scan(kept_.span());
   report_.vertex_triangle -= found_.size() - left;
   pairs_.resize(left);
-  parallel_for(found_.size(), detail::KeepFlagged{found_.span(), kept_.span(), pairs_.span()});
+  parallel_for(found_.size(), detail::KeepFlagged<ContactPair>{found_.span(), kept_.span(), pairs_.span()});
 }
 
 inline void ContactSearch::join_components(const detail::SurfaceView& s) {

@@ -87,12 +87,31 @@ struct SurfaceBuffers {
       : vertices(mesh.vertices),
         edges(mesh.edges),
         triangles(mesh.triangles),
-        apart(mesh.apart),
         objects(static_cast<int>(mesh.objects.size())),
         materials(mesh.materials),
         dhat(dhat_),
         guard(guard_) {
+    std::vector<int> first(mesh.objects.size() + 1, static_cast<int>(mesh.vertices.size()));
+    for (int v = static_cast<int>(mesh.vertices.size()); v-- > 0;)
+      first[static_cast<std::size_t>(mesh.vertices[static_cast<std::size_t>(v)].object)] = v;
+    for (std::size_t o = mesh.objects.size(); o-- > 0;) first[o] = std::min(first[o], first[o + 1]);
+    first_vertex.upload(first);
+    for (std::size_t o = 0, n = mesh.objects.size(); o < n; ++o)
+      is_outside.push_back(std::any_of(mesh.apart.begin() + static_cast<std::ptrdiff_t>(mesh.apart.empty() ? 0 : o * n),
+                                       mesh.apart.begin() + static_cast<std::ptrdiff_t>(mesh.apart.empty() ? 0 : (o + 1) * n),
+                                       [](char c) { return c != 0; }));
+    set_apart(mesh.apart);
     set_carriage(mesh, {});
+  }
+  void set_apart(const std::vector<char>& matrix) {
+    const std::size_t n = is_outside.size();
+    std::vector<char> all(matrix.empty() ? 0 : n, 0);
+    for (std::size_t o = 0; o < all.size(); ++o) {
+      all[o] = is_outside[o] ? 1 : 0;
+      for (std::size_t p = 0; p < n && all[o] != 0; ++p)
+        if (is_outside[p] && matrix[o * n + p] == 0) all[o] = 0;
+    }
+    apart.upload(matrix), shuns.upload(all);
   }
   /// Sorts the primitives by what they follow and whether they sleep: whether all their vertices are members of a cluster.
   void set_carriage(const SurfaceMesh& mesh, const std::map<int, Vec3>& clusters) {
@@ -103,6 +122,10 @@ struct SurfaceBuffers {
     std::vector<char> sleeps;
     for (int carrier : carriers.vertex) sleeps.push_back(clusters.contains(carrier) ? 1 : 0);
     member.upload(sleeps);
+    std::vector<char> together(mesh.objects.size(), 0);
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+      if (carriers.vertex[v] == kFree || frames.vertex[v] != kWorld) together[static_cast<std::size_t>(mesh.vertices[v].object)] = 1;
+    always.upload(together);
     const auto follows = [&](int v) { return frames.vertex[static_cast<std::size_t>(v)] != kWorld; };
     const auto is_asleep = [&](std::span<const int> v) {
       return sleeps[static_cast<std::size_t>(v[0])] != 0 && carriers.common(v) != kFree;
@@ -111,9 +134,12 @@ struct SurfaceBuffers {
       return Primitives(
           mesh, [&, following, sleeping](std::span<const int> v) { return follows(v[0]) == following && is_asleep(v) == sleeping; });
     };
-    followers = pick(true, false), asleep = pick(true, true), rest = pick(false, false);
+    const auto out = [&](int v) { return is_outside[static_cast<std::size_t>(mesh.vertices[static_cast<std::size_t>(v)].object)]; };
+    followers = pick(true, false), asleep = pick(true, true);
+    rest = Primitives(mesh, [&](std::span<const int> v) { return !follows(v[0]) && !out(v[0]); });
+    outside = Primitives(mesh, [&](std::span<const int> v) { return out(v[0]); });
     TAPE_CHECK(pick(false, true).size() == 0);
-    alone = rest.size() == 0 && frames.lead.size() == 2;
+    alone = rest.size() + outside.size() == 0 && frames.lead.size() == 2;
     everything = {}, all_followers = {};
     if (alone) return;
     everything = Primitives(mesh, [](std::span<const int>) { return true; });
@@ -132,6 +158,7 @@ struct SurfaceBuffers {
             lead.span(),
             member.span(),
             apart.span(),
+            shuns.span(),
             objects,
             materials,
             dhat,
@@ -143,10 +170,15 @@ struct SurfaceBuffers {
   Buffer<int> vertex_carrier, edge_carrier, triangle_carrier, vertex_frame, lead;
   Buffer<Home> home;                     ///< [frames]
   Buffer<char> member;                   ///< [nv]
+  Buffer<int> first_vertex;              ///< [objects + 1] vertices of an object are consecutive
+  Buffer<char> always;                   ///< [objects] 1: touches itself, or follows a frame
   Buffer<char> apart;                    ///< [objects objects], or empty
-  Primitives followers, asleep, rest;    ///< of frames, awake; of frames, asleep; and those that follow none
+  Buffer<char> shuns;                    ///< [objects], or empty
+  Primitives followers, asleep;          ///< of frames, awake and asleep
+  Primitives rest, outside;              ///< that follow none; the second of objects that are kept apart from others
   Primitives everything, all_followers;  ///< all, and those of frames; empty if alone
   bool alone = false;                    ///< everything follows one frame: nothing need be seen from the world
+  std::vector<bool> is_outside;          ///< [objects] kept apart from others, when it all began
   int objects, materials;
   Real dhat, guard;
 };

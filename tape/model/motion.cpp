@@ -6,10 +6,9 @@
 
 namespace tape {
 namespace {
-/// The first of `keys` after time t.
-template <class Key>
-typename std::vector<Key>::const_iterator following(const std::vector<Key>& keys, Real t) {
-  return std::upper_bound(keys.begin(), keys.end(), t, [](Real time, const Key& key) { return time < key.time; });
+/// The first waypoint after time t.
+std::vector<Waypoint>::const_iterator following(const std::vector<Waypoint>& waypoints, Real t) {
+  return std::ranges::upper_bound(waypoints, t, {}, &Waypoint::time);
 }
 }  // namespace
 
@@ -25,12 +24,12 @@ Pose driven_pose(const Body& body, Real t) {
   return {rotation_exp(s * turn) * last.pose.rotation, last.pose.position + s * (next->pose.position - last.pose.position)};
 }
 
-Vec3 grip_offset(const Grip& grip, Real t) {
-  if (grip.motion.empty()) return Vec3::Zero();
-  const auto next = following(grip.motion, t);
-  if (next == grip.motion.begin()) return next->offset;
-  const Grip::Key& last = *(next - 1);
-  if (next == grip.motion.end()) return last.offset;
-  return last.offset + (t - last.time) / (next->time - last.time) * (next->offset - last.offset);
+Vec3 grip_offset(const Grip& grip, Real t, const std::vector<Real>& events) {
+  Vec3 offset = Vec3::Zero();
+  for (const Grip::Move& move : grip.motion) {
+    const Real gone = std::min(t, move.until < 0 ? t : Moment(0, move.until).at(events)) - move.start.at(events);
+    if (gone > 0) offset += std::min(gone / move.duration, 1.0) * move.by;
+  }
+  return offset;
 }
 }  // namespace tape

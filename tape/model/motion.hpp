@@ -8,5 +8,6 @@ namespace tape {
 Pose driven_pose(const Body& body, Real t);
 
 /// How far [m] the target of a grip has moved at time t [s].
-Vec3 grip_offset(const Grip& grip, Real t);
+/// @param events  [s] when each has happened (Moment::at)
+Vec3 grip_offset(const Grip& grip, Real t, const std::vector<Real>& events = {});
 }  // namespace tape

@@ -10,6 +10,7 @@
 #include "tape/model/cluster_params.hpp"
 #include "tape/model/film.hpp"
 #include "tape/model/mass_properties.hpp"
+#include "tape/model/moment.hpp"
 #include "tape/model/triangle_mesh.hpp"
 #include "tape/model/winding.hpp"
 
@@ -113,6 +114,7 @@ struct Body {
   int material = 0;                      ///< index into Scene::materials
   /// Of the shape that the mesh stands for, in the mesh's frame; none: those of the mesh itself.
   std::optional<MassProperties> solid = {};
+  bool outside = false;  ///< whoever simulates the articulations has it too: all links, and what they stand on
 };
 
 struct Material {
@@ -144,13 +146,15 @@ struct Grip {
   GripTarget what;
   std::string to;      ///< body that the grip ties to; empty: a target moved by the script
   Real stiffness = 0;  ///< [N/m] of the whole grip; 0: chosen from the masses and strips of the scene
-  Real start = 0;      ///< [s]
-  Real end = 1e300;    ///< [s] released here
-  struct Key {
-    Real time;    ///< [s]
-    Vec3 offset;  ///< [m] from where the target was at the start
+  Moment start;
+  Moment end = 1e300;  ///< released here
+  struct Move {
+    Moment start;
+    Real duration;   ///< [s]
+    Vec3 by;         ///< [m] evenly over the duration
+    int until = -1;  ///< event at which it stops before its time; -1: none
   };
-  std::vector<Key> motion;  ///< times ascending, linear between; holds still before and after
+  std::vector<Move> motion;  ///< of the target; those at the same time add up
 };
 
 struct AxleParams {
@@ -173,8 +177,8 @@ struct AxleJoint {
   AxleParams params;
 };
 
-/// Bodies that move together, as somebody else says before each step (bodies/articulation.hpp). What its links meet of each other and of
-/// fixed bodies is that one's matter, unless a step says otherwise.
+/// Bodies that move together, as somebody else says before each step (bodies/articulation.hpp). What bodies that are `outside` meet of each
+/// other is that one's matter, unless a step says otherwise.
 struct Articulation {
   std::string name;
   std::vector<std::string> links;  ///< bodies
@@ -199,6 +203,7 @@ struct Scene {
   std::vector<Grip> grips;
   std::vector<AxleJoint> axles;
   std::vector<Articulation> articulations;
+  int events = 0;  ///< that moments of grips hang on; whoever watches the run says when they happen
 
   Real dhat() const;                               ///< [m] contact.dhat, or the smallest of the films' (1e-3 without strips)
   Real mu(int a, int b) const;                     ///< friction of two materials

@@ -22,12 +22,33 @@ struct QBlocks {
   int inertia;                  ///< place of the first piece of its inertia / dt^2, [count, count], row after row
   int first_link, link_blocks;  ///< its blocks of links
 };
+/// Drives of three coordinates, by how far these are ahead of where they go alone: a force proportional to that, up to limits.
+struct DriveBlock {
+  Vec3 stiffness, least, most;
+  TAPE_HD Vec3 force(const Vec3& ahead) const { return stiffness.cwiseProduct(ahead).cwiseMax(least).cwiseMin(most); }
+  TAPE_HD Real energy(const Vec3& ahead) const {
+    Real sum = 0;
+    for (int k = 0; k < 3; ++k) {
+      const Real f = force(ahead)[k];
+      if (stiffness[k] > 0) sum += f * (ahead[k] - f / (2 * stiffness[k]));
+    }
+    return sum;
+  }
+  /// Stiffness where the limits are not reached.
+  TAPE_HD Vec3 slope(const Vec3& ahead) const {
+    Vec3 out = stiffness;
+    for (int k = 0; k < 3; ++k)
+      if (const Real f = stiffness[k] * ahead[k]; f < least[k] || f > most[k]) out[k] = 0;
+    return out;
+  }
+};
 /// Where the blocks of unknowns stand in the system that is solved.
 struct FoldView {
   Span<const int> solved;  ///< [n] block there; -1 - k for block k of links
   Span<const LinkBlock> links;
   Span<const QBlocks> articulations;
   Span<const Mat3> jacobian, inertia;
+  Span<const DriveBlock> drives;  ///< [blocks of all articulations]
   TAPE_HD const LinkBlock* link(int block) const { return solved[block] < 0 ? &links[-1 - solved[block]] : nullptr; }
   TAPE_HD const QBlocks& of(const LinkBlock& l) const { return articulations[l.articulation]; }
 };
@@ -48,8 +69,10 @@ class Articulations {
   void begin(const std::vector<ArticulationStep>& steps, const std::vector<Eigen::VectorXd>& target, Real dt);
   EnergySum energy(Span<const Vec3> q) const;
   /// Solves for the unknowns' Newton direction x. The right side b, minus the gradient, becomes that by what is solved for: 0 at links.
-  /// @param points  [n] m, position of each block of a strip
-  LinearReport solve(LinearSolver& linear, const BlockMatrix& a, Span<const Vec3> points, Span<const Vec3> q, Span<Vec3> b, Span<Vec3> x);
+  /// @param points   [n] m, position of each block of a strip
+  /// @param limited  false: as if the drives had no limits
+  LinearReport solve(LinearSolver& linear, const BlockMatrix& a, Span<const Vec3> points, Span<const Vec3> q, bool limited, Span<Vec3> b,
+                     Span<Vec3> x);
   /// Coordinates [articulations][m] from blocks [q blocks].
   std::vector<Eigen::VectorXd> coordinates(const std::vector<Vec3>& q) const;
 
@@ -59,7 +82,7 @@ class Articulations {
     Buffer<std::uint64_t> keys;
     Buffer<Mat3> values;
   };
-  FoldView view() const;
+  FoldView view(bool limited = true) const;
   void fold(const SlotGroup& group, int more, Folded& out) const;
 
   std::vector<ArticulationPart> parts_;
@@ -69,6 +92,7 @@ class Articulations {
   Buffer<LinkBlock> links_;
   Buffer<QBlocks> articulations_;
   Buffer<Mat3> jacobian_, inertia_;
+  Buffer<DriveBlock> drives_, limitless_;
   Buffer<Vec3> target_;
   Folded fixed_, contact_;
   BlockMatrix matrix_;

@@ -1,3 +1,5 @@
+#include <limits>
+
 #include "tape/core/functors.hpp"
 #include "tape/solver/articulations.hpp"
 
@@ -48,26 +50,28 @@ struct Fold {
     return a ? Mat3(f.jacobian[a->jacobian + r].transpose() * right) : right;
   }
 };
-/// The inertia, in the slots from `slot` on.
+/// The inertia and the drives' stiffness, in the slots from `slot` on.
 struct AddInertia {
   FoldView f;
   int slot;
+  Span<const Vec3> q, target;
   Span<std::uint64_t> keys;
   Span<Mat3> values;
   TAPE_HD void operator()(int articulation) const {
     int at = slot;
     for (int k = 0; k < articulation; ++k) at += f.articulations[k].count * (f.articulations[k].count + 1) / 2;
-    const QBlocks& q = f.articulations[articulation];
-    for (int r = 0; r < q.count; ++r) {
-      for (int c = r; c < q.count; ++c, ++at) {
-        keys[at] = block_key(q.solved + r, q.solved + c);
-        values[at] = f.inertia[q.inertia + r * q.count + c];
+    const QBlocks& of = f.articulations[articulation];
+    for (int r = 0; r < of.count; ++r) {
+      for (int c = r; c < of.count; ++c, ++at) {
+        keys[at] = block_key(of.solved + r, of.solved + c);
+        values[at] = f.inertia[of.inertia + r * of.count + c];
+        if (c == r) values[at].diagonal() += f.drives[of.first + r].slope(q[of.first + r] - target[of.first + r]);
       }
     }
   }
 };
 /// inertia (q - target) / dt^2 of one block of an articulation.
-TAPE_HD inline Vec3 pull(const FoldView& f, const QBlocks& part, Span<const Vec3> q, Span<const Vec3> target, int row) {
+TAPE_HD inline Vec3 inertia_pull(const FoldView& f, const QBlocks& part, Span<const Vec3> q, Span<const Vec3> target, int row) {
   Vec3 sum = Vec3::Zero();
   for (int c = 0; c < part.count; ++c) sum += f.inertia[part.inertia + row * part.count + c] * (q[part.first + c] - target[part.first + c]);
   return sum;
@@ -77,9 +81,12 @@ struct Energy {
   Span<const Vec3> q, target;
   TAPE_HD EnergySum operator()(int articulation) const {
     const QBlocks& part = f.articulations[articulation];
-    Real twice = 0;
-    for (int r = 0; r < part.count; ++r) twice += (q[part.first + r] - target[part.first + r]).dot(pull(f, part, q, target, r));
-    return {twice / 2, twice / 2};
+    Real sum = 0;
+    for (int r = 0; r < part.count; ++r) {
+      const Vec3 ahead = q[part.first + r] - target[part.first + r];
+      sum += ahead.dot(inertia_pull(f, part, q, target, r)) / 2 + f.drives[part.first + r].energy(ahead);
+    }
+    return {sum, sum};
   }
 };
 /// What is no link goes over as it is.
@@ -99,7 +106,8 @@ struct FoldRight {
   TAPE_HD void operator()(int articulation) const {
     const QBlocks& part = f.articulations[articulation];
     for (int r = 0; r < part.count; ++r) {
-      Vec3 sum = -pull(f, part, q, target, r);
+      const int k = part.first + r;
+      Vec3 sum = -inertia_pull(f, part, q, target, r) - f.drives[k].force(q[k] - target[k]);
       for (int l = part.first_link; l < part.first_link + part.link_blocks; ++l)
         sum += f.jacobian[f.links[l].jacobian + r].transpose() * b[f.links[l].block];
       b[first_block + part.first + r] = sum;
@@ -173,6 +181,7 @@ inline void Articulations::begin(const std::vector<ArticulationStep>& steps, con
   TAPE_CHECK(steps.size() == parts_.size() && target.size() == parts_.size());
   std::vector<Mat3> jacobian, inertia;
   std::vector<Vec3> to;
+  std::vector<DriveBlock> drives;
   for (std::size_t a = 0; a < parts_.size(); ++a) {
     const ArticulationPart& part = parts_[a];
     TAPE_CHECK(steps[a].inertia.rows() == part.coordinates && steps[a].inertia.cols() == part.coordinates);
@@ -187,13 +196,18 @@ inline void Articulations::begin(const std::vector<ArticulationStep>& steps, con
       for (int c = 0; c < part.blocks; ++c)
         inertia.push_back(articulations::piece(over_dt2, r, c, r == c ? Mat3(Mat3::Identity()) : Mat3(Mat3::Zero())));
       to.push_back(articulations::piece(target[a], r, 0).col(0));
+      const auto block = [&](const Eigen::VectorXd& v) { return Vec3(articulations::piece(v, r, 0).col(0)); };
+      drives.push_back({block(steps[a].drive / (dt * dt)), block(steps[a].least), block(steps[a].most)});
     }
   }
-  jacobian_.upload(jacobian), inertia_.upload(inertia), target_.upload(to);
+  jacobian_.upload(jacobian), inertia_.upload(inertia), target_.upload(to), drives_.upload(drives);
+  constexpr Real kNone = std::numeric_limits<Real>::infinity();
+  for (DriveBlock& drive : drives) drive.least.setConstant(-kNone), drive.most.setConstant(kNone);
+  limitless_.upload(drives);
 }
 
-inline FoldView Articulations::view() const {
-  return {solved_.span(), links_.span(), articulations_.span(), jacobian_.span(), inertia_.span()};
+inline FoldView Articulations::view(bool limited) const {
+  return {solved_.span(), links_.span(), articulations_.span(), jacobian_.span(), inertia_.span(), (limited ? drives_ : limitless_).span()};
 }
 
 inline EnergySum Articulations::energy(Span<const Vec3> q) const {
@@ -211,18 +225,18 @@ inline void Articulations::fold(const SlotGroup& group, int more, Folded& out) c
 }
 
 inline LinearReport Articulations::solve(LinearSolver& linear, const BlockMatrix& a, Span<const Vec3> points, Span<const Vec3> q,
-                                         Span<Vec3> b, Span<Vec3> x) {
+                                         bool limited, Span<Vec3> b, Span<Vec3> x) {
   int more = 0;
   for (const ArticulationPart& part : parts_) more += part.blocks * (part.blocks + 1) / 2;
   fold(a.fixed(), more, fixed_);
-  parallel_for(articulations_.size(),
-               articulations::AddInertia{view(), fixed_.keys.size() - more, fixed_.keys.span(), fixed_.values.span()});
+  parallel_for(articulations_.size(), articulations::AddInertia{view(limited), fixed_.keys.size() - more, q, target_.span(),
+                                                                fixed_.keys.span(), fixed_.values.span()});
   fold(a.contact(), 0, contact_);
   matrix_.set_fixed_pattern(right_.size(), fixed_.keys.span());
   matrix_.accumulate_fixed(fixed_.values.span());
   matrix_.set_contact_pattern(contact_.keys.span());
   matrix_.accumulate_contact(contact_.values.span());
-  parallel_for(articulations_.size(), articulations::FoldRight{view(), first_block_, q, target_.span(), b});
+  parallel_for(articulations_.size(), articulations::FoldRight{view(limited), first_block_, q, target_.span(), b});
   parallel_for(b.size, articulations::Gather{solved_.span(), b, right_.span()});
   parallel_for(b.size, articulations::Gather{solved_.span(), points, points_.span()});
   const LinearReport report = linear.solve(matrix_, points_.span(), right_.span(), solution_.span());

@@ -30,8 +30,10 @@ void visit_state(State& s, const Visit& visit) {
   for (Vec3& p : s.grip_base) visit(p);
   visit(s.step);
   for (int& c : s.grip_closed) visit(c);
-  s.outside.resize(visit.count(s.outside.size()));
-  for (Real& r : s.outside) visit(r);
+  for (std::vector<Real>* numbers : {&s.outside, &s.events}) {
+    numbers->resize(visit.count(numbers->size()));
+    for (Real& r : *numbers) visit(r);
+  }
   const auto visit_memory = [&](EffectMemory& memory) {
     for_each_memory(memory, [&](auto& pairs) {
       pairs.resize(visit.count(pairs.size()));
@@ -201,6 +203,7 @@ State load_snapshot(const std::string& file, const World& world) {
   } catch (const std::out_of_range&) {
     refuse("its arrays do not fit");
   }
+  if (std::ssize(state.events) != world.setup.scene.events) refuse("its script waits for other events");
   try {
     const auto check = [&](const auto&... memory) { (check_memory(world, memory), ...); };
     std::apply(check, state.memory);

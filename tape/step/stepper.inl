@@ -424,6 +424,7 @@ class SideStepper final : public Stepper {
       return true;
     };
     overshot_ = false;
+    setting_out_ = articulations_.any();
     for (int k = 0; k < params.max_newton; ++k) {
       ++report.newton;
       if (!find_direction(report)) return false;
@@ -437,6 +438,10 @@ class SideStepper final : public Stepper {
       last_update = moved;
       left = contracts ? moved * rho / (1 - rho) : moved;
       // An update that friction's secant shortened says nothing of what is left.
+      if (setting_out_) {
+        set_out(slope, k, report);
+        continue;
+      }
       const bool converged = !overshot_ && stops(moved, slope, rho);
       const Real last = std::exchange(previous, overshot_ ? 0 : moved);
       bool at_round_off = false;
@@ -457,7 +462,18 @@ class SideStepper final : public Stepper {
   LinearReport solve() {
     const BlockMatrix& matrix = objective_->matrix();
     if (!articulations_.any()) return linear_.solve(matrix, points_.span(), right_.span(), direction_.span());
-    return articulations_.solve(linear_, matrix, points_.span(), now_.q.span(), right_.span(), direction_.span());
+    return articulations_.solve(linear_, matrix, points_.span(), now_.q.span(), !setting_out_, right_.span(), direction_.span());
+  }
+
+  /// One of the first updates of a step with links, as if their drives had no limits: where links stand at the start they lie so far behind
+  /// what is foreseen that each drive seems to be at its limit. Ends with the first update that goes its whole way.
+  void set_out(Real slope, int updates, StepReport& report) {
+    constexpr int kMost = 10;
+    bool at_round_off = false;
+    const int halvings = report.halvings;
+    const bool lower = line_search(slope, report, at_round_off);
+    if (!lower) report.failure.clear();
+    setting_out_ = lower && !at_round_off && (limit_ < 1 || report.halvings > halvings) && updates + 1 < kMost;
   }
 
   bool stops(Real moved, Real slope, Real rho) const {
@@ -480,7 +496,7 @@ class SideStepper final : public Stepper {
 
   /// direction_ = -H^-1 g, right_ = -g.
   bool find_direction(StepReport& report) {
-    mode_ = world_.setup.newton.hessian;
+    mode_ = setting_out_ ? HessianMode::projected : world_.setup.newton.hessian;
     for (;;) {
       {
         const Stopwatch watch(assembly_ms_);
@@ -508,7 +524,10 @@ class SideStepper final : public Stepper {
     const ContactParams& contact = world_.setup.scene.contact;
     const Real dhat = world_.setup.scene.dhat();
     const auto paths = [&] { return coordinates_->paths(now_, direction_.span()); };
-    const auto scale = [&](Real factor) { parallel_for(direction_.size(), stepping::Scale{direction_.span(), factor}); };
+    const auto scale = [&](Real factor) {
+      parallel_for(direction_.size(), stepping::Scale{direction_.span(), factor});
+      limit_ *= factor;
+    };
     Real way = reduce(now_.x.size(), 0.0, stepping::Way{paths()}, Larger{});
     if (way > contact.max_move) scale(contact.max_move / std::exchange(way, contact.max_move));
     constexpr Real kFar = 30;  // [dhat] what moves less meets a few layers
@@ -519,12 +538,15 @@ class SideStepper final : public Stepper {
 
   /// Moves now_ along direction_: limited by CCD for each connected component, then halved until the energy falls.
   bool line_search(Real slope, StepReport& report, bool& at_round_off) {
+    limit_ = 1;
     if (search_) {
       shorten_direction();
       update_candidates(direction_.span());
       if (search_->candidates().size + search_->bonded().size > 0) {
         const Stopwatch watch(ccd_ms_);
-        search_->limit_steps(coordinates_->paths(now_, direction_.span()), {.eta = world_.setup.scene.contact.ccd_gap});
+        const std::vector<Real> limits =
+            search_->limit_steps(coordinates_->paths(now_, direction_.span()), {.eta = world_.setup.scene.contact.ccd_gap});
+        limit_ *= *std::ranges::min_element(limits);
         search_->scale(direction_.span());
       }
     }
@@ -623,6 +645,8 @@ class SideStepper final : public Stepper {
   EnergySum energy_;                            // at now_
   Real dt_ = 0, moving_mass_ = 0, extent_ = 0;  // moving_mass_: of the tape, if there is any; extent_: largest coordinate [m]
   bool overshot_ = false;
+  Real limit_ = 1;            // share of the last direction that its limits let go, the least of all components
+  bool setting_out_ = false;  // the first updates of a step with links
   Real search_ms_ = 0, assembly_ms_ = 0, linear_ms_ = 0, ccd_ms_ = 0, line_search_ms_ = 0, front_ms_ = 0;
   int searches_ = 0;
   long long capped_before_ = 0;

@@ -33,16 +33,15 @@ void check_cells(const Assembly& a, const Scene& scene) {
     }
   }
 }
-/// Links of articulations, from each other and from what is fixed.
+/// What somebody else simulates, from each other.
 void keep_apart(const Scene& scene, const Assembly& a, SurfaceMesh& mesh) {
   if (a.articulations.empty()) return;
   const auto object_of = [&](int body) { return static_cast<int>(scene.strips.size()) + body; };
   const std::size_t n = mesh.objects.size();
   mesh.apart.assign(n * n, 0);
-  const auto foreign = [&](std::size_t b) { return scene.bodies[b].motion == Motion::linked || scene.bodies[b].motion == Motion::fixed; };
   for (std::size_t b = 0; b < scene.bodies.size(); ++b)
     for (std::size_t c = 0; c < scene.bodies.size(); ++c)
-      mesh.apart[(scene.strips.size() + b) * n + scene.strips.size() + c] = foreign(b) && foreign(c) ? 1 : 0;
+      mesh.apart[(scene.strips.size() + b) * n + scene.strips.size() + c] = scene.bodies[b].outside && scene.bodies[c].outside ? 1 : 0;
   for (const ArticulationPart& part : a.articulations) {
     JointlyMoved& joint = mesh.together.emplace_back();
     for (int body : part.links) joint.objects.push_back(object_of(body));

@@ -80,6 +80,7 @@ State State::start(const World& world) {
     state.v.insert(state.v.end(), world.assembly.v.begin() + first, world.assembly.v.begin() + last);
   }
   state.memory = world.setup.memory;
+  state.events.assign(static_cast<std::size_t>(world.setup.scene.events), std::numeric_limits<Real>::infinity());
   for (const BodyPart& body : world.assembly.bodies) {
     if (body.cluster_of >= 0) {
       form_cluster(world, state);
@@ -110,6 +111,7 @@ std::string State::hash() const {
   hash.add(grip_base.data(), grip_base.size() * sizeof(Vec3));
   hash.add(grip_closed.data(), grip_closed.size() * sizeof(int));
   hash.add(outside.data(), outside.size() * sizeof(Real));
+  hash.add(events.data(), events.size() * sizeof(Real));
   const auto add_memory = [&](EffectMemory copy) {
     for_each_memory(copy, [&](auto& pairs) {
       for (auto& pair : pairs) pair.visit([&](auto& value) { hash.add(&value, sizeof value); });
@@ -144,7 +146,7 @@ void close_grips(const World& world, State& state) {
   const std::vector<Vec3> x = vertex_positions(world, state);
   std::size_t spring = 0;
   for (std::size_t g = 0; g < scene.grips.size(); ++g) {
-    const bool closes = state.grip_closed[g] == 0 && state.time >= scene.grips[g].start;
+    const bool closes = state.grip_closed[g] == 0 && state.time >= scene.grips[g].start.at(state.events);
     if (closes) state.grip_closed[g] = 1;
     for (int v : world.assembly.grips[g].vertices) {
       if (closes) state.grip_base[spring] = x[static_cast<std::size_t>(v)];
@@ -160,9 +162,9 @@ Drive Drive::at(const World& world, const State& state, Real dt) {
   for (std::size_t g = 0; g < scene.grips.size(); ++g) {
     const Grip& grip = scene.grips[g];
     const Assembly::GripPart& part = world.assembly.grips[g];
-    const bool closed = state.grip_closed[g] != 0 && end <= grip.end;
+    const bool closed = state.grip_closed[g] != 0 && end <= grip.end.at(state.events);
     for (std::size_t k = 0; k < part.vertices.size(); ++k) {
-      drive.grip_target.push_back(state.grip_base[drive.grip_target.size()] + grip_offset(grip, end));
+      drive.grip_target.push_back(state.grip_base[drive.grip_target.size()] + grip_offset(grip, end, state.events));
       drive.grip_stiffness.push_back(closed ? part.stiffness : 0);
     }
   }

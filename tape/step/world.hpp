@@ -59,6 +59,7 @@ struct State {
   std::vector<BodyState> bodies;  ///< [bodies] with the clusters at the end
   std::vector<Vec3> grip_base;    ///< [springs] m, where the target of each spring was when its grip closed
   std::vector<int> grip_closed;   ///< [grips] 1 once it has closed
+  std::vector<Real> events;       ///< [Scene::events] s, when each has happened; infinite if it has not
   EffectMemory memory;            ///< of pairs that adhere, but for those asleep in clusters
   std::vector<Real> outside;      ///< what whoever simulates the articulations needs to go on: theirs to read
   std::vector<Cluster> clusters;  ///< of reduced rolls, in the order of the bodies that they are; members keep the x of the last step

@@ -37,7 +37,7 @@ std::vector<int> ends(const Setup& setup, bool tip) {
 /// Draws an end of the strip by `way` in `time`.
 void draw(Setup& setup, bool tip, const Vec3& way, Real time) {
   Grip grip = hold(tip ? "tip" : "root", ends(setup, tip));
-  grip.motion = {{0, Vec3::Zero()}, {time, way}};
+  grip.motion = {{0, time, way}};
   setup.scene.grips.push_back(grip);
 }
 Setup torn(const Adhesion& how, Real speed) {

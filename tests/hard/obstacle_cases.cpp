@@ -25,7 +25,7 @@ Setup dragged(Setup setup, Real distance, Real speed) {
   grip.name = "pull";
   grip.what.object = "tape";
   grip.what.vertices = {0, 1, 2, 3};
-  grip.motion = {{0, Vec3::Zero()}, {distance / speed, Vec3(-distance, 0, 0)}};
+  grip.motion = {{0, distance / speed, Vec3(-distance, 0, 0)}};
   setup.scene.grips.push_back(grip);
   return setup;
 }

@@ -86,7 +86,8 @@ class RandomScene {
     Grip hand;
     hand.name = "hand";
     hand.what = {.object = "tape0", .vertices = {0, 1, 2}, .points = {}};
-    hand.motion = {{0.02, Vec3::Zero()}, {0.15, vector(0.08)}, {0.3, vector(0.08) + Vec3(0, 0, 0.05)}};
+    const Vec3 first = vector(0.08);
+    hand.motion = {{0.02, 0.13, first}, {0.15, 0.15, vector(0.08) + Vec3(0, 0, 0.05) - first}};
     if (chance(0.3)) hand.end = 0.2;
     setup_.scene.grips.push_back(hand);
   }

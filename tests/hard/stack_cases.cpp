@@ -59,7 +59,7 @@ Setup pulled_out(Real speed) {
   grip.name = "pull";
   grip.what.object = "tape";
   grip.what.vertices = {0, 1, 2, 3};
-  grip.motion = {{0.05, Vec3::Zero()}, {0.05 + 0.08 / speed, Vec3(-0.08, 0, 0)}};
+  grip.motion = {{0.05, 0.08 / speed, Vec3(-0.08, 0, 0)}};
   setup.scene.grips.push_back(grip);
   setup.scene.time.dt = std::min(0.005, 0.01 / speed);
   return setup;

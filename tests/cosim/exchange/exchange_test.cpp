@@ -133,3 +133,58 @@ TEST(Exchange, APadPressesTheTapeWithItsDrivesForce) {
   for (int k = 0; k < 40; ++k) ASSERT_TRUE(both.step()) << both.report.failure;
   EXPECT_NEAR(both.link(0, 0).normal.force.z(), 5, 0.02 * 5);
 }
+/// The finger again, with a box under the strip: its drive comes to its limit as soon as it presses.
+TEST(Exchange, ADriveAtItsLimitPressesWithThat) {
+  constexpr Real kLimit = 0.05;  // [N m], 1.25 N at the tip
+  RobotModel model{.name = "finger"};
+  model.links = {{.name = "palm"}, box_link("tip", 0.004, Vec3(0.01, 0.01, 0.01), Vec3(0.04, 0, 0))};
+  model.links[1].inertial = {0.004, Vec3(0.04, 0, 0), Vec3(6e-8, 7.5e-6 - 0.004 * 0.0016, 7.5e-6 - 0.004 * 0.0016).asDiagonal()};
+  model.joints = {joint("hinge", robot::JointType::revolute, Vec3::UnitY(), Vec3::Zero())};
+  RobotScene scene;
+  scene.world.gravity.setZero();
+  scene.robots = {part("finger", model, Vec3(-0.04, 0, 0.0056))};
+  scene.robots[0].params.drives = {{.kp = 50, .kd = 0.5, .effort = kLimit}};
+  scene.robots[0].motions = {stand("hinge", 0.06)};
+  tape::Setup setup = free_strip(0.01, 1e-5);
+  tape::test::add_body(setup, "box", tape::box_mesh(Vec3(0.1, 0.05, 0.02)), tape::Motion::fixed, Vec3(0, 0, -0.0103));
+  Coupled both(setup, scene);
+  for (int k = 0; k < 40; ++k) {
+    ASSERT_TRUE(both.step()) << both.report.failure;
+    EXPECT_GT(both.report.min_gap, 0);
+    EXPECT_LT(std::fabs(both.report.articulations[0].force[0]), 1.5 * kLimit) << k << ": it does not bounce";
+  }
+  EXPECT_NEAR(both.report.articulations[0].force[0], -kLimit, 0.01 * kLimit);
+  EXPECT_LT(std::fabs(both.bullet().state(0).v[0]), 1e-3);
+}
+/// Two pads on slides close on a strip with 10 N each and open again.
+TEST(Exchange, PadsPinchAStripWithTheirDrivesForceAndLetGo) {
+  RobotModel model{.name = "gripper"};
+  model.links = {{.name = "base"}, box_link("upper", 0.02, Vec3(0.012, 0.012, 0.01)), box_link("lower", 0.02, Vec3(0.012, 0.012, 0.01))};
+  model.joints = {joint("up", robot::JointType::prismatic, -Vec3::UnitZ(), Vec3(0, 0, 0.0065)),
+                  joint("down", robot::JointType::prismatic, Vec3::UnitZ(), Vec3(0, 0, -0.0065))};
+  model.joints[1].parent = 0;
+  RobotScene scene;
+  scene.world.gravity.setZero();
+  scene.robots = {part("gripper", model, Vec3::Zero())};
+  scene.robots[0].params.drives = {{.kp = 1e4, .kd = 100, .effort = 10}, {.kp = 1e4, .kd = 100, .effort = 10}};
+  const auto go = [](const char* name, double to, double start) {
+    RobotMotion motion = stand(name, to);
+    motion.start = start;
+    return motion;
+  };
+  scene.robots[0].motions = {go("up", 0.003, 0), go("down", 0.003, 0), go("up", -0.004, 0.3), go("down", -0.004, 0.3)};
+  tape::Setup setup = free_strip(0.01, 1e-4);
+  setup.scene.contact.kappa = 1e5;
+  Coupled both(setup, scene);
+  int pinching = 0;
+  for (int k = 0; k < 45; ++k) {
+    ASSERT_TRUE(both.step()) << k << ": " << both.report.failure;
+    EXPECT_GT(both.report.min_gap, 0) << k;
+    pinching += both.stepper->exchange().pinching;
+    if (k != 28) continue;
+    EXPECT_NEAR(both.link(0, 0).normal.force.z(), 10, 0.2);
+    EXPECT_NEAR(both.link(0, 1).normal.force.z(), -10, 0.2);
+  }
+  EXPECT_GT(pinching, 20) << "steps in which the pads touch on the tape side";
+  EXPECT_EQ(both.link(0, 0).normal.force.norm() + both.link(0, 1).normal.force.norm(), 0);
+}

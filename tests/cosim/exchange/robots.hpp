@@ -32,8 +32,10 @@ inline RobotPart part(const std::string& name, RobotModel model, const robot::Ve
 }
 
 /// One joint held at a position from the beginning.
-inline robot::JointTrajectory stand(const std::string& joint, double position) {
-  return {.joints = {joint}, .times = {0}, .knots = {robot::VecX::Constant(1, position)}};
+inline RobotMotion stand(const std::string& joint, double position) {
+  return {[=](const robot::VecX&) {
+    return robot::JointTrajectory{.joints = {joint}, .times = {0}, .knots = {robot::VecX::Constant(1, position)}};
+  }};
 }
 
 /// Both worlds of a scene, in step.

@@ -24,7 +24,8 @@ World strip_world() {
                                .what = {.object = "tape", .vertices = {0}, .points = {}},
                                .to = {},
                                .stiffness = kStiffness,
-                               .motion = {{0, Vec3::Zero()}, {1, Vec3(0.1, 0, 0)}}});
+                               .start = 0,
+                               .motion = {{0, 1, Vec3(0.1, 0, 0)}}});
   return World::build(setup);
 }
 

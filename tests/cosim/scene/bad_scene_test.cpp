@@ -93,7 +93,7 @@ TEST(BadScene, IsRefusedByFileLineAndKey) {
        {"interfaces.0.between", "only tape sticks"}},
       {"interfaces: [{between: [tape], mu: 1}]", ":4: ", {"interfaces.0.between", "two names"}},
       {"interfaces: [{between: [tape, tape]}]", ":4: ", {"interfaces.0", "neither mu nor law"}},
-      {"script: [{gripp: tape.tip}]", ":4: ", {"script.0", "one of grip, move, release, robot, wait"}},
+      {"script: [{gripp: tape.tip}]", ":4: ", {"script.0", "one of grip, move, release, robot, wait, wait_until"}},
       {"script: [{grip: tape.tipp}]", ":4: ", {"script.0.grip = tape.tipp", "tip, root, rows"}},
       {"script: [{grip: tap.tip}]", ":4: ", {"script.0.grip = tap.tip", "did you mean tape.tip"}},
       {"script: [{grip: tape.rows, rows: [0, 99]}]", ":4: ", {"script.0.rows.1 = 99", "out of range"}},

@@ -30,7 +30,7 @@ struct Surface {
   std::vector<Vec3> x;
   std::vector<tape::Index3> triangles;
   bool is_strip;
-  bool outside = false;  // a robot's or fixed: what these have of each other is Bullet's matter
+  bool outside = false;  // what these have of each other is Bullet's matter
   bool of_roll = false;  // its gaps are those of its layers: tests/tape/step/roll_gaps_test.cpp
   std::vector<tape::Vec2> rest = {};
 };
@@ -43,7 +43,7 @@ std::vector<Surface> surfaces(const tape::Scene& scene) {
   }
   for (const tape::Body& body : scene.bodies) {
     Surface s{body.name, body.xi, {}, body.mesh.triangles, false};
-    s.outside = !scene.articulations.empty() && (body.motion == tape::Motion::linked || body.motion == tape::Motion::fixed);
+    s.outside = body.outside;
     for (const Vec3& v : body.mesh.vertices) s.x.push_back(apply(body.pose, v));
     all.push_back(std::move(s));
   }

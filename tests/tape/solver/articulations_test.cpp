@@ -94,7 +94,7 @@ TEST(Articulations, DirectionIsThatOfTheCoordinatesAndLinksFollow) {
   LinearSolver linear({.linear = LinearKind::cholesky}, layout);
   Buffer<Vec3> points(std::vector<Vec3>(13, Vec3::Zero())), right(blocks_of(p.b)), x(std::vector<Vec3>(13, Vec3::Zero()));
   const Buffer<Vec3> q(q_blocks(p.q));
-  ASSERT_TRUE(articulations.solve(linear, a, points.span(), q.span(), right.span(), x.span()).converged);
+  ASSERT_TRUE(articulations.solve(linear, a, points.span(), q.span(), true, right.span(), x.span()).converged);
 
   Eigen::VectorXd lag = Eigen::VectorXd::Zero(20);
   lag.head(8) = p.q - p.target;

@@ -163,7 +163,7 @@ class BondedCorner {
     setup.scene.adhesives = {{0, 1, {AdhesionLaw::bond, {{true, true}, {true, true}}, {}, {}, {}}}};
     Grip pull = test::hold("pull", {0}), others = test::hold("others", {1, 2, 3});
     pull.stiffness = 10;
-    pull.motion = {{0, Vec3::Zero()}, {time, Vec3(0, 0, force / pull.stiffness)}};
+    pull.motion = {{0, time, Vec3(0, 0, force / pull.stiffness)}};
     others.stiffness = 1;
     setup.scene.grips = {pull, others};
     setup.newton.velocity_tol = 1e-5;

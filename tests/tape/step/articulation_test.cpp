@@ -124,6 +124,7 @@ TEST(Articulation, AHingedLinkTurnsAboutItsHinge) {
 TEST(Articulation, WhatSomebodyElseKeepsApartMeetsOnlyWherePinching) {
   tape::Setup s = strip_and_cube(Motion::linked, 1e-5);
   test::add_body(s, "table", box_mesh(Vec3(0.02, 0.02, 0.002)), Motion::fixed, Vec3(0.002, 0.001, 0.0125));
+  for (Body& body : s.scene.bodies) body.outside = true;
   for (const bool pinching : {false, true}) {
     test::Simulation sim(s);
     Cube outside{.v = Vec3(0, 0, 0.5)};
@@ -140,6 +141,45 @@ TEST(Articulation, WhatSomebodyElseKeepsApartMeetsOnlyWherePinching) {
       EXPECT_NEAR(place(sim).z(), 0.0055 + 5 * 0.002 * 0.5, 1e-9);
     }
   }
+}
+TEST(Articulation, ALinkMeetsWhatOnlyTheTapeSideHas) {
+  tape::Setup s = strip_and_cube(Motion::linked, 1e-5);
+  test::add_body(s, "table", box_mesh(Vec3(0.02, 0.02, 0.002)), Motion::fixed, Vec3(0.002, 0.001, 0.0125));
+  s.scene.bodies[0].outside = true;
+  test::Simulation sim(s);
+  Cube outside{.v = Vec3(0, 0, 0.5)};
+  for (int k = 0; k < 5; ++k) {
+    sim.exchange = {.articulations = {outside.step(0.002)}, .pinching = {}};
+    outside.take(sim.step().articulations[0], 0.002);
+  }
+  EXPECT_TRUE(sim.broken.empty()) << sim.broken.front();
+  EXPECT_LT(place(sim).z(), 0.0065);
+}
+/// A slide that holds still with 100 N/m (drive / dt^2) and at most 0.2 N, pushed by a cube that weighs 0.5 N.
+TEST(Articulation, ADriveAtItsLimitPushesOnWithThat) {
+  tape::Setup s = test::strip_setup(test::flat_strip(0.02, 2, Vec3(0, 0, -1)));  // far away
+  s.scene.time.dt = 0.002;
+  Body& slide = test::add_body(s, "slide", box_mesh(Vec3::Constant(kSide)), Motion::linked, Vec3::Zero());
+  slide.xi = 0;
+  Body& cube = test::add_body(s, "cube", box_mesh(Vec3::Constant(kSide)), Motion::dynamic, Vec3(0, 0, kSide + 1e-4));
+  cube.mass = 0.5 / 9.81;
+  s.scene.articulations = {{"slide", {"slide"}, 1}};
+  s.newton.velocity_tol = 1e-6;
+  test::Simulation sim(s);
+  constexpr Real kDt = 0.002, kBare = 0.01;  // [s], [kg]
+  Real v = 0;
+  for (int k = 0; k < 20; ++k) {
+    MatrixXd J = MatrixXd::Zero(6, 1);
+    J(2, 0) = 1;
+    ArticulationStep step{VectorXd::Constant(1, kDt * v), MatrixXd::Constant(1, 1, kBare), {J}};
+    step.drive = VectorXd::Constant(1, 100 * kDt * kDt), step.least = VectorXd::Constant(1, -0.2), step.most = VectorXd::Constant(1, 0.2);
+    sim.exchange = {.articulations = {step}, .pinching = {}};
+    const ArticulationReport report = sim.step().articulations[0];
+    const Real ahead = report.q[0] - kDt * v, drive = std::clamp(100 * ahead, -0.2, 0.2);
+    EXPECT_NEAR(report.force[0], kBare * ahead / (kDt * kDt) + drive, 1e-5) << k;  // what pushes is what mass and drive take up
+    v = report.q[0] / kDt;
+  }
+  EXPECT_TRUE(sim.broken.empty()) << sim.broken.front();
 }
 TEST(Articulation, ALinkWithoutArticulationIsRefusedByName) {
   tape::Setup s = strip_and_cube(Motion::linked, 1e-5);

@@ -83,7 +83,7 @@ TEST(Capstan, AStripDraggedOverADrumPullsBackByTheEulerFactor) {
   const StripMesh mesh = make_strip_mesh(strip.mesh, 0.019, 1);
   setup.scene.grips = {hold("hook", root_vertices(mesh, 1e-9)), hold("pull", tip_vertices(mesh, 1e-9))};
   setup.scene.grips[0].to = "weight";
-  setup.scene.grips[1].motion = {{0, Vec3::Zero()}, {1, Vec3(0, 0, -0.02)}};
+  setup.scene.grips[1].motion = {{0, 1, Vec3(0, 0, -0.02)}};
   Simulation simulation(setup);
   simulation.check_intersections = false;
   simulation.may_reach_limits = true;  // the first step, in which the weight starts to hang

@@ -47,7 +47,7 @@ Peel peel(Real angle_deg, Real cell, int samples = 2) {
   params<CohesiveZone>(setup.effects).samples = samples;
   Grip hand = test::hold("hand", tip_vertices(make_strip_mesh(strip.mesh, film.width, scene.seed), 1e-6));
   const Real time = peeled / speed;
-  hand.motion = {{0, Vec3::Zero()}, {time, peeled * Vec3(std::cos(angle) - 1, 0, std::sin(angle))}};
+  hand.motion = {{0, time, peeled * Vec3(std::cos(angle) - 1, 0, std::sin(angle))}};
   scene.grips = {hand};
   setup.newton.velocity_tol = 1e-4;
   test::Simulation s(setup);

@@ -83,7 +83,8 @@ Tip heavy_elastica(Real gamma, int cells, MeshPattern pattern, Real grid_angle =
 Grip dead_load(const std::string& name, std::vector<int> vertices, const std::vector<Vec3>& force) {
   Grip grip = hold(name, std::move(vertices));
   grip.stiffness = 1e-5;
-  for (const Vec3& f : force) grip.motion.push_back({static_cast<Real>(grip.motion.size()), f / grip.stiffness});
+  for (std::size_t k = 0; k < force.size(); ++k)
+    grip.motion.push_back({static_cast<Real>(k) - 1, 1, (k == 0 ? force[k] : Vec3(force[k] - force[k - 1])) / grip.stiffness});
   return grip;
 }
 /// The cantilevers of [Sze 2004], at a tenth of their size: E = 1.2e6 Pa, nu = 0, h/L as there, free length 1 m.

@@ -1,0 +1,106 @@
+#include "cosim/scene/script.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <limits>
+
+#include "cosim/scene/read_scene.hpp"
+#include "tape/core/error.hpp"
+#include "tape/model/motion.hpp"
+using namespace cosim;
+
+namespace {
+constexpr double kNever = std::numeric_limits<double>::infinity();
+const std::string kStrip = "film: vinyl_19mm\nstrip: {length: 0.1}\n";
+const std::string kArm = R"(film: vinyl_19mm
+strip: {length: 0.1, position: [5, 0, 0]}
+robots:
+  arm: {urdf: arm7.urdf, joints: {"arm_joint[1-3]": 0.1, arm_joint4: 0.5}, drives: {kp: {"*": 100, arm_joint1: 300}, kd: 5}}
+  hand: {urdf: hand20_right.urdf, position: [2, 0, 0], postures: {right_: pinch}}
+)";
+BothWorlds read(const std::string& text) {
+  const SceneFile file = SceneFile::parse(text, std::filesystem::path(TAPE_SOURCE_DIR) / "data" / "scenes" / "script.yaml");
+  BothWorlds both = read_worlds(file);
+  file.require_all_used();
+  return both;
+}
+std::string refusal(const std::string& text) {
+  try {
+    read(text);
+  } catch (const tape::InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+double joint(const RobotPart& part, const robot::VecX& q, const std::string& name) { return q[part.model->find_joint(name)]; }
+}  // namespace
+
+TEST(Script, WhatFollowsAWaitCountsFromWhenItEnds) {
+  const BothWorlds both = read(kStrip + R"(script:
+  - {grip: tape.tip, as: pull}
+  - {move: pull, by: [0, 0, 0.1], speed: 0.05, wait: false}
+  - {wait_until: {force: pull, above: 2}, timeout: 5}
+  - {release: pull}
+)");
+  ASSERT_EQ(both.events.size(), 1u);
+  EXPECT_EQ(both.tape.events, 1);
+  EXPECT_EQ(to_text(both.events[0]), "force of pull above 2 N within 5 s");
+  const tape::Grip& pull = both.tape.grips[0];
+  EXPECT_EQ(pull.end.at({}), kNever);
+  EXPECT_EQ(pull.end.at({1.5}), 1.5);
+}
+TEST(Script, AMoveStopsWhereItsEventFindsItAndTheNextGoesOnFromThere) {
+  const BothWorlds both = read(kStrip + R"(script:
+  - {grip: tape.tip, as: pull}
+  - {move: pull, by: [0, 0, 0.1], duration: 2, until: {height: tape.tip, above: 0.03}}
+  - {move: pull, by: [0.1, 0, 0], duration: 1}
+)");
+  const tape::Grip& pull = both.tape.grips[0];
+  EXPECT_LT((grip_offset(pull, 1, {}) - tape::Vec3(0, 0, 0.05)).norm(), 1e-15);
+  EXPECT_LT((grip_offset(pull, 1, {0.6}) - tape::Vec3(0.04, 0, 0.03)).norm(), 1e-15);
+  EXPECT_LT((grip_offset(pull, 5, {0.6}) - tape::Vec3(0.1, 0, 0.03)).norm(), 1e-15);
+  EXPECT_EQ(both.events[0].timeout, 2) << "the end of the way ends it too";
+}
+TEST(Script, WaitsAreRefusedWithTheirReason) {
+  const auto script = [](const std::string& entry) { return kStrip + "script: [{grip: tape.tip, as: pull}, " + entry + "]"; };
+  EXPECT_NE(refusal(script("{wait_until: {force: pull, above: 2}}")).find("timeout"), std::string::npos);
+  EXPECT_NE(refusal(script("{wait_until: {force: push, above: 2}, timeout: 1}")).find("no grip"), std::string::npos);
+  EXPECT_NE(refusal(script("{wait_until: {height: pull, above: 2}, timeout: 1}")).find("no body and no strip"), std::string::npos);
+  EXPECT_NE(refusal(script("{wait_until: {force: pull}, timeout: 1}")).find("either above or below"), std::string::npos);
+  EXPECT_NE(refusal(script("{wait_until: {forc: pull, above: 1}, timeout: 1}")).find("one of force, height"), std::string::npos);
+  EXPECT_NE(refusal(script("{wait_until: {distance: tape, below: 1}, timeout: 1}")).find("distance"), std::string::npos);
+}
+
+TEST(Script, JointsMayBeNamedByAPattern) {
+  const RobotPart arm = read(kArm).robots.robots[0];
+  EXPECT_EQ(joint(arm, arm.start, "arm_joint3"), 0.1);
+  EXPECT_EQ(joint(arm, arm.start, "arm_joint4"), 0.5);
+  EXPECT_EQ(joint(arm, arm.start, "arm_joint5"), 0);
+  EXPECT_EQ(arm.params.drives[0].kp, 300);
+  EXPECT_EQ(arm.params.drives[1].kp, 100);
+  EXPECT_NE(refusal(kArm + "script: [{robot: arm, joints: {arm_jont1: 1}, duration: 1}]").find("arm_joint1"), std::string::npos);
+}
+TEST(Script, AHandStartsInAPostureAndGoesToAnother) {
+  const BothWorlds both = read(kArm + "script: [{robot: hand, posture: open, prefix: right_, duration: 0.4}]");
+  const RobotPart& hand = both.robots.robots[1];
+  EXPECT_NEAR(joint(hand, hand.start, "right_finger1_joint1"), 0.34 * 1.6, 1e-12);  // the fraction of its upper limit
+  const RobotScript script(hand, {});
+  EXPECT_NEAR(joint(hand, script.told_at(0.2), "right_finger1_joint1"), 0.17 * 1.6, 1e-12) << "half way, the profile is symmetric";
+  EXPECT_EQ(script.told_at(0.4).cwiseAbs().maxCoeff(), 0);
+}
+TEST(Script, AFrameMovesStraightAndAStopKeepsItWhereItIs) {
+  const BothWorlds both = read(kArm + R"(script:
+  - {robot: arm, frame: arm_flange, by: [0, 0, -0.05], speed: 0.05, until: {speed: tape, above: 9}}
+  - {robot: arm, joints: {arm_joint1: 0.3}, duration: 1}
+)");
+  const RobotPart& arm = both.robots.robots[0];
+  const double end = arm.motions[0].duration;
+  const RobotScript never(arm, {}), stopped(arm, {end / 2});
+  const robot::VecX half = never.told_at(end / 2);
+  EXPECT_EQ((stopped.told_at(end / 2) - half).norm(), 0);
+  EXPECT_NEAR(joint(arm, stopped.told_at(end / 2 + 1), "arm_joint1"), 0.3, 1e-12);
+  EXPECT_EQ(joint(arm, stopped.told_at(end / 2 + 1), "arm_joint2"), joint(arm, half, "arm_joint2"));
+  EXPECT_EQ(stopped.commands_at(end / 2)[1].velocity, 0);
+  EXPECT_NE(never.told_at(end)[1], half[1]) << "nothing stops it";
+}
