@@ -144,6 +144,15 @@ Real si_per(Unit unit) {
   }
 }
 
+Episode::Span Episode::common() const {
+  Span span{streams.front().times.front(), streams.front().times.back()};
+  for (const MotionStream& stream : streams) {
+    span.start = std::max(span.start, stream.times.front());
+    span.end = std::min(span.end, stream.times.back());
+  }
+  return span;
+}
+
 const EpisodeCamera& Episode::camera(const std::string& wanted, const std::string& where) const {
   std::string names;
   for (const EpisodeCamera& one : cameras) {
@@ -175,15 +184,11 @@ void require_sound(const Episode& episode, const std::string& where) {
 
 std::vector<std::string> remarks(const Episode& episode) {
   std::vector<std::string> all;
-  Real start = episode.streams.front().times.front(), end = episode.streams.front().times.back();
-  for (const MotionStream& stream : episode.streams) {
-    remark_on(stream, all);
-    start = std::max(start, stream.times.front());
-    end = std::min(end, stream.times.back());
-  }
+  for (const MotionStream& stream : episode.streams) remark_on(stream, all);
+  const auto [start, end] = episode.common();
   for (const LandmarkTrack& track : episode.landmarks) {
     const auto outside = std::count_if(track.landmarks.begin(), track.landmarks.end(),
-                                       [&](const Landmark& mark) { return mark.time < start || mark.time > end; });
+                                       [from = start, to = end](const Landmark& mark) { return mark.time < from || mark.time > to; });
     if (outside > 0)
       all.push_back(fmt::format("landmarks of camera {}: {} lie before {:g} s or after {:g} s, where a motion is not recorded",
                                 track.camera, outside, start, end));

@@ -64,6 +64,11 @@ struct Episode {
   std::vector<EpisodeCamera> cameras = {};
   std::vector<LandmarkTrack> landmarks = {};
 
+  struct Span {
+    Real start, end;  ///< [s]
+  };
+  /// In which every stream is recorded; start > end if there is no such time. Assumes that the episode is sound.
+  Span common() const;
   /// @throws InputError naming `where` if there is no such camera, with the names that there are
   const EpisodeCamera& camera(const std::string& name, const std::string& where) const;
 };
