@@ -94,7 +94,7 @@ TEST(Score, AWristCameraGoesWithTheLinkThatCarriesIt) {
   EXPECT_THROW(frame_errors(real, kEgo, simulated, 0), InputError) << "the ego camera stands in the world";
 }
 TEST(Score, TheMeanOfARunBeginsWithTheLeadIn) {
-  EXPECT_EQ(run_score(frames_with_errors({{3.1 - 0.1, 10}, {13.3 - 10.3, 20}}), 3).frames, 2) << "times are rounded";
+  EXPECT_EQ(run_score(frames_with_errors({{4.1 - 1.1, 10}, {5, 20}}), 3).frames, 2) << "4.1 - 1.1 is less than 3 by a rounding";
   const std::vector<FrameError> frames = frames_with_errors({{0, 100}, {2.99, 100}, {3, 10}, {4, 20}, {5, 60}});
   const RunScore score = run_score(frames, 3);
   EXPECT_NEAR(score.mean_error, 30, 1e-12);
