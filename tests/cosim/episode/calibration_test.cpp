@@ -50,6 +50,10 @@ TEST(Calibration, APointJustInsideTheFoldIsFoundAndOneBeyondIsNot) {
   }
   EXPECT_FALSE(undistort(kFold, {0.667, 0}));
   EXPECT_FALSE(undistort(kFold, {0, -5}));
+  const Distortion rises_again{.k1 = -0.5, .k2 = 0.1};  // r - r^3/2 + r^5/10 has a summit of 0.6 at r = 1, and a root for more at r > 1.41
+  EXPECT_TRUE(undistort(rises_again, {0.599, 0}));
+  EXPECT_FALSE(undistort(rises_again, {0.61, 0}));
+  EXPECT_FALSE(undistort(rises_again, {0, 2}));
   EXPECT_FALSE(folds_before(kFold, {0, 0.99}));
   EXPECT_TRUE(folds_before(kFold, {0, 1.01}));
   EXPECT_TRUE(folds_before(kFold, {3, 0})) << "where the slope is positive again";
