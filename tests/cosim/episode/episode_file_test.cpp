@@ -71,6 +71,7 @@ TEST_F(EpisodeFile, ReadsBackWhatWasWritten) {
   EXPECT_EQ(read.landmarks[0].landmarks[0].pixel, Vec2(400.25, 300.5));
   EXPECT_EQ(read.landmarks[0].landmarks[1].kind, LandmarkKind::side_box);
   EXPECT_TRUE(read.landmarks[0].landmarks[1].estimated);
+  EXPECT_FALSE(read.landmarks[0].landmarks[0].estimated);
   EXPECT_FALSE(read.landmarks[0].landmarks[2].visible);
 }
 TEST_F(EpisodeFile, AnUnsoundEpisodeIsNotWritten) {

@@ -36,7 +36,7 @@ inline Episode small_episode() {
   episode.landmarks = {{.camera = "ego"}};
   episode.landmarks[0].landmarks = {{.time = 0.5, .pixel{400.25, 300.5}},
                                     {.time = 1.0, .pixel{410, 310}, .kind = LandmarkKind::side_box, .estimated = true},
-                                    {.time = 1.5, .visible = false}};
+                                    {.time = 1.5, .pixel{-900, 0}, .visible = false}};
   return episode;
 }
 
