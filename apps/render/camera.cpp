@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "cosim/episode/calibration.hpp"
 #include "tape/math/rotation.hpp"
 
 namespace tape::render {
@@ -30,6 +31,11 @@ Camera Camera::make(const LookAtSettings& s, int width, int height) {
 Camera Camera::make(const PinholeSettings& s) {
   require_valid(s, "camera");
   return {s.width, s.height, s.fx, s.fy, s.cx, s.cy, {rotation_exp(s.rotation), s.position}};
+}
+
+Camera Camera::make(const cosim::Calibration& c, const Pose& X_WC) {
+  require_valid(c, "camera");
+  return {c.width, c.height, c.fx, c.fy, c.cx, c.cy, X_WC};
 }
 
 Vec2 Camera::project(const Vec3& p_W) const {

@@ -4,6 +4,10 @@
 #include "tape/core/settings.hpp"
 #include "tape/core/types.hpp"
 
+namespace cosim {
+struct Calibration;
+}
+
 namespace tape::render {
 using Bounds = Eigen::AlignedBox<Real, 3>;  // [m]
 
@@ -54,6 +58,8 @@ struct Camera {
   /// @throws SettingsError for a value out of range, InputError where eye, target and up span no plane
   static Camera make(const LookAtSettings& settings, int width, int height);
   static Camera make(const PinholeSettings& settings);
+  /// The ideal camera that takes the undistorted picture of a calibrated one: the same focal lengths and principal point, no lens.
+  static Camera make(const cosim::Calibration& calibration, const Pose& X_WC);
   /// World point in camera axes [m].
   Vec3 from_world(const Vec3& p_W) const { return X_WC.rotation.transpose() * (p_W - X_WC.position); }
   /// Pixel (u, v) on which a world point falls. Assumes that it lies in front of the camera.

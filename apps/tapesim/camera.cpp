@@ -1,4 +1,5 @@
 #include "apps/tapesim/pictures.hpp"
+#include "cosim/episode/camera_file.hpp"
 #include "cosim/scene/scene_file.hpp"
 
 namespace tape::tapesim {
@@ -29,7 +30,10 @@ T read_as(const cosim::Reader& camera) {
   return settings;
 }
 CameraParams read_camera(const cosim::Reader& camera) {
-  if (camera["fx"]) return read_as<render::PinholeSettings>(camera);
+  if (camera["fx"]) {
+    cosim::read_distortion(camera["distortion"]);  // checked, no more: pictures are drawn as an ideal lens makes them
+    return read_as<render::PinholeSettings>(camera);
+  }
   const auto look = read_as<render::LookAtSettings>(camera);
   try {
     render::Camera::make(look, 2, 2);  // a camera that sees something

@@ -45,7 +45,9 @@ void Hdf5Writer::require(bool success) const {
 
 void Hdf5Writer::write(const std::string& array, const void* values, hid_t type, const Shape& shape) {
   const tape::Hdf5Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
-  const tape::Hdf5Handle data(H5Dcreate2(id_, array.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+  const tape::Hdf5Handle folders(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  H5Pset_create_intermediate_group(folders, 1);
+  const tape::Hdf5Handle data(H5Dcreate2(id_, array.c_str(), type, space, folders, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
   require(data >= 0);
   if (product(shape) > 0) require(H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
 }
@@ -98,11 +100,12 @@ void Hdf5Writer::append(const std::string& array, const std::vector<int>& row, c
   append(array, row.data(), H5T_NATIVE_INT, row_shape);
 }
 
-void Hdf5Writer::write_text(const std::string& attribute, const std::string& text) {
+void Hdf5Writer::write_text(const std::string& array, const std::string& attribute, const std::string& text) {
   const tape::Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate(H5S_SCALAR), H5Sclose);
   H5Tset_size(type, text.size() + 1);
   H5Tset_cset(type, H5T_CSET_UTF8);
-  const tape::Hdf5Handle written(H5Acreate2(id_, attribute.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const tape::Hdf5Handle object(H5Oopen(id_, array.c_str(), H5P_DEFAULT), H5Oclose);
+  const tape::Hdf5Handle written(H5Acreate2(object, attribute.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
   require(written >= 0 && H5Awrite(written, type, text.c_str()) >= 0);
 }
 
@@ -169,14 +172,45 @@ std::vector<double> Hdf5Reader::read_row(const std::string& array, int index) co
   return read<double>(array, H5T_NATIVE_DOUBLE, index);
 }
 
-std::string Hdf5Reader::read_text(const std::string& attribute) const {
-  const tape::Hdf5Handle read(H5Aopen(id_, attribute.c_str(), H5P_DEFAULT), H5Aclose);
-  if (read < 0) fail(attribute);
-  const tape::Hdf5Handle type(H5Aget_type(read), H5Tclose);
+bool Hdf5Reader::holds(const std::string& name) const {
+  for (std::size_t slash = 0; slash != name.npos;) {  // the library refuses to look into a folder that is not there
+    slash = name.find('/', slash + 1);
+    if (H5Lexists(id_, name.substr(0, slash).c_str(), H5P_DEFAULT) <= 0) return false;
+  }
+  return true;
+}
+
+std::vector<std::string> Hdf5Reader::members(const std::string& folder) const {
+  std::vector<std::string> names;
+  if (!holds(folder)) return names;
+  const tape::Hdf5Handle group(H5Gopen2(id_, folder.c_str(), H5P_DEFAULT), H5Gclose);
+  if (group < 0) fail("folder " + folder);
+  const auto add = [](hid_t, const char* name, const H5L_info_t*, void* all) -> herr_t {
+    static_cast<std::vector<std::string>*>(all)->emplace_back(name);
+    return 0;
+  };
+  if (H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &names) < 0) fail("folder " + folder);
+  return names;
+}
+
+std::string Hdf5Reader::read_text(const std::string& array, const std::string& attribute) const {
+  const std::string name = array == "/" ? attribute : "attribute " + attribute + " of " + array;
+  const tape::Hdf5Handle object(H5Oopen(id_, array.c_str(), H5P_DEFAULT), H5Oclose);
+  const tape::Hdf5Handle read(H5Aopen(object, attribute.c_str(), H5P_DEFAULT), H5Aclose);
+  if (read < 0) fail(name);
+  const tape::Hdf5Handle type(H5Aget_type(read), H5Tclose), space(H5Aget_space(read), H5Sclose);
   constexpr std::size_t kMost = 64'000'000;
-  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 || H5Tget_size(type) > kMost) fail(attribute);
+  if (H5Tget_class(type) != H5T_STRING || H5Sget_simple_extent_npoints(space) != 1) fail(name);
+  if (H5Tis_variable_str(type) > 0) {  // as Python's h5py writes text
+    char* given = nullptr;
+    if (H5Aread(read, type, static_cast<void*>(&given)) < 0 || !given) fail(name);
+    std::string text = given;
+    H5free_memory(given);
+    return text;
+  }
+  if (H5Tget_size(type) > kMost) fail(name);
   std::string text(H5Tget_size(type), '\0');
-  if (H5Aread(read, type, text.data()) < 0) fail(attribute);
+  if (H5Aread(read, type, text.data()) < 0) fail(name);
   text.resize(std::min(text.find('\0'), text.size()));
   return text;
 }

@@ -19,10 +19,13 @@ class Hdf5Writer {
   ~Hdf5Writer();
   Hdf5Writer(const Hdf5Writer&) = delete;
   Hdf5Writer& operator=(const Hdf5Writer&) = delete;
+  /// An array whose name may hold folders, a/b/c: they are made.
   void write(const std::string& array, const std::vector<double>& values, const Shape& shape);
   void write(const std::string& array, const std::vector<int>& values, const Shape& shape);
   /// Text as an attribute of the file.
-  void write_text(const std::string& attribute, const std::string& text);
+  void write_text(const std::string& attribute, const std::string& text) { write_text("/", attribute, text); }
+  /// Text as an attribute of an array.
+  void write_text(const std::string& array, const std::string& attribute, const std::string& text);
   /// Adds a row at the end of a growing array, which the first row creates.
   void append(const std::string& array, const std::vector<double>& row, const Shape& row_shape);
   void append(const std::string& array, const std::vector<float>& row, const Shape& row_shape);
@@ -49,7 +52,10 @@ class Hdf5Reader {
   Shape shape(const std::string& array) const;
   std::vector<double> read_reals(const std::string& array) const;
   std::vector<int> read_ints(const std::string& array) const;
-  std::string read_text(const std::string& attribute) const;
+  bool holds(const std::string& name) const;                          ///< an array or folder
+  std::vector<std::string> members(const std::string& folder) const;  ///< by name; none where there is no such folder
+  std::string read_text(const std::string& attribute) const { return read_text("/", attribute); }
+  std::string read_text(const std::string& array, const std::string& attribute) const;
   /// Row `index` of a growing array.
   std::vector<double> read_row(const std::string& array, int index) const;
 

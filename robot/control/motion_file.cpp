@@ -12,6 +12,15 @@ std::string_view trimmed(std::string_view text) {
   return first == text.npos ? std::string_view() : text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
+std::vector<std::string_view> cells_of(std::string_view line) {
+  std::vector<std::string_view> cells;
+  for (std::size_t begin = 0, end = 0; end != line.npos; begin = end + 1) {
+    end = line.find(',', begin);
+    cells.push_back(trimmed(line.substr(begin, end == line.npos ? end : end - begin)));
+  }
+  return cells;
+}
+
 MotionFile::MotionFile(const std::filesystem::path& file, const RobotModel& model, const std::vector<std::string>& joints,
                        const TrajectoryFileOptions& options)
     : file_(file), model_(model), options_(options), text_(file), result_{joints, {}, {}, JointTrajectory::Between::linear} {

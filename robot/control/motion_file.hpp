@@ -7,6 +7,8 @@
 
 namespace robot {
 std::string_view trimmed(std::string_view text);
+/// The parts of a line between its commas, trimmed.
+std::vector<std::string_view> cells_of(std::string_view line);
 
 /// Joint positions over time while their file is read line by line: what all formats have in common.
 class MotionFile {

@@ -9,14 +9,6 @@
 
 namespace robot {
 namespace {
-std::vector<std::string_view> cells_of(std::string_view line) {
-  std::vector<std::string_view> cells;
-  for (std::size_t begin = 0, end = 0; end != line.npos; begin = end + 1) {
-    end = line.find(',', begin);
-    cells.push_back(trimmed(line.substr(begin, end == line.npos ? end : end - begin)));
-  }
-  return cells;
-}
 std::string place(std::size_t cell, std::string_view name) { return fmt::format("column {} ({})", cell + 1, name); }
 
 /// Where the position of a joint stands, and in which unit: q = scale * value + offset.
