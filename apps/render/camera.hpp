@@ -18,6 +18,7 @@ struct LookAtSettings {
   Vec3 up{0, 0, 1};          ///< [1]   drawn upwards
   Real fov = 35;             ///< [deg] vertical field of view
   std::string follow = "";   ///< thing that the camera moves along with, without turning
+  std::string mount = "";    ///< body, or link of a robot, in whose frame eye, target and up are
   template <class F>
   void fields(F&& f) {
     f("eye", eye, "m", Range::any(), "where the camera stands");
@@ -25,6 +26,7 @@ struct LookAtSettings {
     f("up", up, "", Range::any(), "direction drawn upwards");
     f("fov", fov, "deg", Range::closed(1, 150), "vertical field of view");
     f("follow", follow, "", Range::any(), "body or strip that the camera moves along with, or tape.tip; it does not turn");
+    f("mount", mount, "", Range::any(), "body, or link as robot:link, that the camera is fixed to: eye, target and up are in its frame");
   }
 };
 
@@ -36,6 +38,7 @@ struct PinholeSettings {
   int width = 848, height = 480;  ///< [px] of the calibrated picture
   Vec3 position{0, 0, 0};         ///< [m]   camera in the world
   Vec3 rotation{0, 0, 0};         ///< [rad] rotation vector from camera to world axes
+  std::string mount = "";         ///< body, or link of a robot, whose frame stands for the world in position and rotation
   template <class F>
   void fields(F&& f) {
     f("fx", fx, "px", Range::positive(), "horizontal focal length");
@@ -46,6 +49,7 @@ struct PinholeSettings {
     f("height", height, "px", Range::closed(1, 16384), "height of the calibrated picture");
     f("position", position, "m", Range::any(), "position in the world");
     f("rotation", rotation, "rad", Range::any(), "rotation vector from camera axes to world axes");
+    f("mount", mount, "", Range::any(), "body, or link as robot:link, that the camera is fixed to: position and rotation are in its frame");
   }
 };
 

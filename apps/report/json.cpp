@@ -36,9 +36,31 @@ Json adhesion_json(const Scene& scene, const AdhesivePair& pair) {
   if (a.law == AdhesionLaw::bond) add_fields(json, a.bond);
   return json;
 }
+Json numbers(const robot::VecX& v) { return std::vector<double>(v.begin(), v.end()); }
+Json robot_json(const cosim::RobotPart& part, const Scene& scene) {
+  Json json = {{"model", part.model->name}, {"base", part.params.fixed_base ? "fixed" : "free"}};
+  double mass = 0;
+  for (const robot::Link& link : part.model->links) mass += link.inertial.mass;
+  json["links"] = part.model->links.size(), json["mass_kg"] = mass;
+  const Vec3 position = part.params.X_WB.translation();
+  const Eigen::AngleAxisd turn(part.params.X_WB.linear());
+  json["position"] = numbers(position), json["rotation_vector"] = numbers(Vec3(turn.angle() * turn.axis()));
+  json["start"] = numbers(part.start), json["velocity"] = numbers(part.velocity);
+  json["friction"] = part.params.friction, json["xi"] = part.xi;
+  json["material"] = scene.materials[static_cast<std::size_t>(part.material)].name;
+  for (std::size_t k = 0; k < part.params.drives.size(); ++k) {
+    const robot::DriveGains& drive = part.params.drives[k];
+    const robot::Joint& joint = part.model->joints[k];
+    json["drives"][joint.name] = {{"kp", drive.kp}, {"kd", drive.kd}, {"effort", std::min(drive.effort, joint.effort)}};
+  }
+  for (const cosim::RobotMotion& motion : part.motions)
+    json["motions"].push_back({{"start", motion.start.time}, {"after_event", motion.start.after}, {"duration", motion.duration}});
+  json["assumed"] = part.model->notes;
+  return json;
+}
 }  // namespace
 
-Json settings_json(const Setup& setup) {
+Json settings_json(const Setup& setup, const cosim::RobotScene& robots) {
   Json json = Json::object();
   const Scene& scene = setup.scene;
   add_fields(json["time"], scene.time);
@@ -70,6 +92,11 @@ Json settings_json(const Setup& setup) {
     json["axles"].push_back({{"body", axle.body}, {"to", axle.to}});
     add_fields(json["axles"].back(), axle.params);
   }
+  for (const cosim::RobotPart& part : robots.robots) json["robots"][part.name] = robot_json(part, scene);
+  if (!robots.robots.empty()) {
+    json["physics"] = {{"substep", robots.world.substep}};
+    add_fields(json["exchange"], robots.exchange);
+  }
   add_fields(json["solver"], setup.newton);
   add_fields(json["solver"], setup.linear);
   for_each_effect([&]<class T>(std::type_identity<T>) {
@@ -81,7 +108,7 @@ Json settings_json(const Setup& setup) {
   return json;
 }
 
-Json report_json(const Provenance& provenance, const World& world, const RunSummary& s) {
+Json report_json(const Provenance& provenance, const World& world, const cosim::RobotScene& robots, const RunSummary& s) {
   Json json = {{"status", s.status}};
   if (!s.failure.empty()) json["failure"] = s.failure;
   json["scene"] = world.setup.scene.name;
@@ -90,7 +117,7 @@ Json report_json(const Provenance& provenance, const World& world, const RunSumm
   json["backend"] = provenance.backend;
   json["threads"] = provenance.threads;
   json["version"] = provenance.version;
-  json["settings"] = settings_json(world.setup);
+  json["settings"] = settings_json(world.setup, robots);
   json["steps"] = s.steps;
   json["resumed_from_step"] = provenance.first_step;
   json["sim_time_s"] = s.sim_time;

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "cosim/exchange/robots.hpp"
 #include "cosim/run/summary.hpp"
 
 namespace tape::report {
@@ -17,9 +18,9 @@ struct Provenance {
 };
 
 /// Every setting of a run, by section. Numbers that are not finite become null, as everywhere in JSON.
-Json settings_json(const Setup& setup);
+Json settings_json(const Setup& setup, const cosim::RobotScene& robots);
 /// The contents of report.json (design of the command line, part 3).
-Json report_json(const Provenance& provenance, const World& world, const RunSummary& summary);
+Json report_json(const Provenance& provenance, const World& world, const cosim::RobotScene& robots, const RunSummary& summary);
 
 /// A settings struct by its list of fields.
 template <Settings T>

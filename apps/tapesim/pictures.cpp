@@ -50,6 +50,7 @@ class Studio {
     for (View& view : views_) {
       render::Camera camera = view.camera;
       if (!view.follow.empty()) camera.X_WC.position += place(view.follow, x) - view.start;
+      if (!view.mount.empty()) camera.X_WC = on(frame_of(view.mount, frame), camera.X_WC);
       pictures.push_back(renderer_.draw(scene, camera));
       scene.legends.clear(), scene.caption.clear();  // once
     }
@@ -62,7 +63,23 @@ class Studio {
     render::Camera camera;
     std::vector<int> follow = {};
     Vec3 start = Vec3::Zero();  ///< [m] their middle in the first state
+    std::string mount = {};     ///< what its pose is in the frame of
   };
+  static Pose on(const Pose& X_WB, const Pose& X_BC) { return {X_WB.rotation * X_BC.rotation, apply(X_WB, X_BC.position)}; }
+  /// Frame of a body or a link. @throws InputError if nothing is named so
+  Pose frame_of(const std::string& name, const RecordedFrame& frame) const {
+    const RecordedMesh& mesh = recording_.mesh();
+    std::size_t body = 0;
+    for (const cosim::RecordedObject& object : mesh.objects) {
+      if (object.strip) continue;
+      if (object.name == name) return frame.bodies[body];
+      ++body;
+    }
+    for (std::size_t r = 0; r < mesh.robots.size(); ++r)
+      for (std::size_t l = 0; l < mesh.robots[r].links.size(); ++l)
+        if (mesh.robots[r].name + ":" + mesh.robots[r].links[l] == name) return cosim::to_tape(frame.robots[r].links[l]);
+    throw InputError("camera.mount = " + name + ": no body and no link robot:link has this name");
+  }
   /// The links of a robot, "robot:link", are one thing.
   static std::string thing(const cosim::RecordedObject& object) { return object.name.substr(0, object.name.find(':')); }
   Vec3 object_color(std::size_t o) const {
@@ -222,10 +239,12 @@ class Studio {
     const int width = all < 2 ? params_.video.width : params_.video.width / all / 2 * 2;
     std::vector<View> views;
     for (const CameraParams& camera : params_.cameras) {
-      if (const auto* pinhole = std::get_if<render::PinholeSettings>(&camera)) views.push_back({render::Camera::make(*pinhole)});
+      if (const auto* pinhole = std::get_if<render::PinholeSettings>(&camera))
+        views.push_back({.camera = render::Camera::make(*pinhole), .mount = pinhole->mount});
       const auto* look = std::get_if<render::LookAtSettings>(&camera);
       if (!look) continue;
-      View view{render::Camera::make(*look, width, height)};
+      View view{.camera = render::Camera::make(*look, width, height), .mount = look->mount};
+      if (!look->mount.empty() && !look->follow.empty()) throw InputError("camera: follow and mount exclude each other");
       if (!look->follow.empty()) {
         view.follow = vertices_named(look->follow);
         view.start = place(view.follow, vertex_positions(recording_.mesh(), recording_.frame(0)));

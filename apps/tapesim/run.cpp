@@ -47,7 +47,11 @@ cosim::RunLog simulate(const RunArguments& arguments, const LoadedWorld& loaded,
     folder.add_step(row);
     progress.update(now.step - first, fmt::format("t {:.3f} s, {:.1f} ms/step", now.time, row.report.wall_ms));
   };
-  options.on_record = [&](const State& now) { folder.add_state(now, now.step > first ? stepper.contact_force() : std::vector<Real>()); };
+  const auto* coupled = dynamic_cast<const cosim::CoupledStepper*>(&stepper);  // none where there are no robots
+  options.on_record = [&](const State& now) {
+    folder.add_state(now, now.step > first ? stepper.contact_force() : std::vector<Real>(),
+                     coupled ? coupled->records() : std::vector<cosim::RobotRecord>());
+  };
   return cosim::simulate(world, stepper, state, options);
 }
 
@@ -108,13 +112,13 @@ int run(const RunArguments& arguments) {
   const std::unique_ptr<Stepper> stepper = cosim::make_stepper(backend, loaded.world, loaded.input.run.robots);
   State state = arguments.resume.empty() ? State::start(loaded.world) : resumed(arguments.resume, loaded.world);
   const int first_step = state.step;
-  RunFolder folder(arguments.out.empty() ? "out/" + loaded.world.setup.scene.name : arguments.out, loaded.world, state,
-                   camera_text(loaded.input.pictures.cameras));
+  RunFolder folder(arguments.out.empty() ? "out/" + loaded.world.setup.scene.name : arguments.out, loaded.world, loaded.input.run.robots,
+                   state, camera_text(loaded.input.pictures.cameras));
   remember_interrupts();
   const cosim::RunLog log = simulate(arguments, loaded, *stepper, state, folder);
   const cosim::RunSummary summary = cosim::summarize(loaded.world, log, loaded.input.run.figures);
   const report::Provenance provenance{arguments.scene.scene, TAPE_VERSION, runs_on_cuda(backend) ? "cuda" : "cpu", threads(), first_step};
-  const std::string json = report::report_json(provenance, loaded.world, summary).dump(2) + '\n';
+  const std::string json = report::report_json(provenance, loaded.world, loaded.input.run.robots, summary).dump(2) + '\n';
   folder.commit(state);
   cosim::write_text(folder / "report.json", json);
   print_summary(summary, folder);

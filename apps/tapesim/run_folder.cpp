@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "apps/report/json.hpp"
 #include "apps/report/steps_csv.hpp"
 #include "apps/report/table.hpp"
 
@@ -11,22 +12,27 @@ namespace fs = std::filesystem;
 namespace {
 std::string csv_line(const std::vector<std::string>& cells) { return report::to_csv({cells, {}}); }
 
+std::string settings_text(const World& world, const cosim::RobotScene& robots) {
+  return report::Json({{"version", TAPE_VERSION}, {"settings", report::settings_json(world.setup, robots)}}).dump(1);
+}
+
 fs::path made(fs::path folder) {
   cosim::make_folder(folder);
   return folder;
 }
 }  // namespace
 
-RunFolder::RunFolder(fs::path folder, const World& world, const State& start, const std::string& camera)
+RunFolder::RunFolder(fs::path folder, const World& world, const cosim::RobotScene& robots, const State& start, const std::string& camera)
     : folder_(made(std::move(folder))),
       world_(&world),
+      mesh_(cosim::RecordedMesh::of(world, robots, camera, settings_text(world, robots))),
       steps_(folder_ / "steps.csv"),
-      states_(folder_ / "state.h5", cosim::RecordedMesh::of(world, camera)) {
+      states_(folder_ / "state.h5", mesh_) {
   const std::string header = csv_line(report::step_columns(world));
   steps_.write(header);
   if (start.step == 0) return;
   keep_earlier_steps(header, start.step);
-  keep_earlier_states(cosim::RecordedMesh::of(world, camera), start.step);
+  keep_earlier_states(start.step);
 }
 
 void RunFolder::keep_earlier_steps(const std::string& header, int step) {
@@ -37,10 +43,10 @@ void RunFolder::keep_earlier_steps(const std::string& header, int step) {
     if (std::atoi(line.c_str()) <= step) steps_.write(line + '\n');
 }
 
-void RunFolder::keep_earlier_states(const cosim::RecordedMesh& mesh, int step) {
+void RunFolder::keep_earlier_states(int step) {
   if (!fs::exists(folder_ / "state.h5")) return;
   const cosim::StateReader earlier(folder_ / "state.h5");
-  if (earlier.mesh().triangles != mesh.triangles || earlier.mesh().rest != mesh.rest) return;
+  if (earlier.mesh().triangles != mesh_.triangles || earlier.mesh().rest != mesh_.rest || earlier.mesh().robots != mesh_.robots) return;
   for (int i = 0; i < earlier.frames(); ++i) {
     const cosim::RecordedFrame frame = earlier.frame(i);
     if (frame.step > step) break;
@@ -51,9 +57,9 @@ void RunFolder::keep_earlier_states(const cosim::RecordedMesh& mesh, int step) {
 
 void RunFolder::add_step(const cosim::StepRow& row) { steps_.write(csv_line(report::step_cells(*world_, row))); }
 
-void RunFolder::add_state(const State& state, std::vector<Real> contact_force) {
+void RunFolder::add_state(const State& state, std::vector<Real> contact_force, std::vector<cosim::RobotRecord> robots) {
   if (state.step <= last_recorded_) return;
-  states_.add(cosim::RecordedFrame::of(*world_, state, std::move(contact_force)));
+  states_.add(cosim::RecordedFrame::of(*world_, state, std::move(contact_force), std::move(robots)));
   last_recorded_ = state.step;
 }
 

@@ -12,9 +12,10 @@ namespace tape::tapesim {
 class RunFolder {
  public:
   /// @param camera  text of the scene's camera, for pictures made later  @throws InputError where the folder cannot be written in
-  RunFolder(std::filesystem::path folder, const World& world, const State& start, const std::string& camera);
+  RunFolder(std::filesystem::path folder, const World& world, const cosim::RobotScene& robots, const State& start,
+            const std::string& camera);
   void add_step(const cosim::StepRow& row);
-  void add_state(const State& state, std::vector<Real> contact_force);
+  void add_state(const State& state, std::vector<Real> contact_force, std::vector<cosim::RobotRecord> robots);
   /// Gives all files their names, and writes the snapshot.
   void commit(const State& state);
   const std::filesystem::path& path() const { return folder_; }
@@ -22,9 +23,10 @@ class RunFolder {
 
  private:
   void keep_earlier_steps(const std::string& header, int step);
-  void keep_earlier_states(const cosim::RecordedMesh& mesh, int step);
+  void keep_earlier_states(int step);
   std::filesystem::path folder_;
   const World* world_;
+  cosim::RecordedMesh mesh_;
   cosim::TextFile steps_;
   cosim::StateWriter states_;
   int last_recorded_ = -1;  // step

@@ -34,7 +34,7 @@ std::string key_of(const Study& study, const std::vector<std::string>& values, c
   std::string text{std::istreambuf_iterator<char>(scene), {}};
   for (const auto& lines : {study.overrides, values}) text += fmt::format("{}\n", fmt::join(lines, "\n"));
   text += fmt::format("{} {} {} {}", TAPE_VERSION, threads(), study.reference.measure, study.reference.angle);
-  text += report::settings_json(loaded.world.setup).dump() + start.hash();
+  text += report::settings_json(loaded.world.setup, loaded.input.run.robots).dump() + start.hash();
   Hash hash;
   hash.add(text.data(), text.size());
   return hash.text();

@@ -169,7 +169,7 @@ void add_motions(const Replay& replay, RobotScene& robots) {
       const robot::VecX start = motion.at(0).q;
       for (std::size_t j = 0; j < motion.joints.size(); ++j)
         part.start[part.model->find_joint(motion.joints[j])] = start[static_cast<Eigen::Index>(j)];
-      part.motions.push_back(std::move(motion));
+      part.motions.push_back({[motion](const robot::VecX&) { return motion; }, motion.start(), motion.end() - motion.start()});
     }
     const robot::JointMap map = joint_map(*part.model);
     part.start = map.all(map.independent_of(part.start));  // joints that follow others start with them

@@ -70,8 +70,11 @@ CoupledStepper::CoupledStepper(const RobotScene& robots, const tape::World& worl
 
 /// Takes out of the inertia what it owes to drives that have limits: on the diagonal, as each works on its own joint, and so much that what
 /// is left is not less than the bare robot's.
-/// @param T  motions of the robot by independent ones
-void CoupledStepper::add_drives(const Part& part, const MatrixXd& bare, const MatrixXd& T, tape::ArticulationStep& step) const {
+/// @param T      motions of the robot by independent ones
+/// @param given  by which these have given way to the load
+void CoupledStepper::add_drives(const Part& part, const MatrixXd& bare, const MatrixXd& T, const VectorXd& given,
+                                tape::ArticulationStep& step) const {
+  const double dt = world_.setup.scene.time.dt;
   const Eigen::Index n = T.cols(), joints = bullet_.state(part.robot).q.size();
   const VectorXd limit = bullet_.effort_limit(part.robot), effort = bullet_.drive_effort(part.robot);
   step.drive = step.least = step.most = VectorXd::Zero(n + 1);
@@ -82,19 +85,23 @@ void CoupledStepper::add_drives(const Part& part, const MatrixXd& bare, const Ma
       if (T(T.rows() - joints + j, k) == 1 && std::isfinite(limit[j])) joint = joint < 0 ? j : joint;
     if (joint < 0) continue;
     step.drive[k] = std::max(0.0, driven(k, k) - bare(k, k));
-    step.least[k] = std::min(0.0, effort[joint] - limit[joint]), step.most[k] = std::max(0.0, effort[joint] + limit[joint]);
+    step.least[k] = effort[joint] - limit[joint], step.most[k] = effort[joint] + limit[joint];
   }
   for (const double share : {1.0, 0.9, 0.7, 0.5, 0.0}) {
     const MatrixXd left = driven - MatrixXd(share * step.drive.head(n).asDiagonal());
     if (share > 0 && (left - kBare * bare).llt().info() != Eigen::Success) continue;
     step.drive *= share;
     step.inertia.topLeftCorner(n, n) = left;
+    const VectorXd unloaded = step.drive.head(n).cwiseProduct(given) / (dt * dt);  // what the load has added to the drives
+    step.least.head(n) += unloaded, step.most.head(n) += unloaded;
     return;
   }
 }
 
-/// What Bullet, which has just made the step alone, says of a robot.
-tape::ArticulationStep CoupledStepper::predicted(const Part& part, const tape::State& state, const RobotState& before, double dt) const {
+/// What Bullet, which has just made the step under a load, says of a robot: where it would be without the load is taken from how it gives
+/// way to it now. A drive that stands at its limit under the load might not if the robot were let go.
+tape::ArticulationStep CoupledStepper::predicted(const Part& part, const tape::State& state, const RobotState& before, double dt,
+                                                 const VectorXd& load) const {
   const MatrixXd T = bullet_.motions(part.robot);
   const Eigen::Index n = T.cols(), dof = T.rows();
   const Eigen::CompleteOrthogonalDecomposition<MatrixXd> inverse(T);
@@ -102,6 +109,8 @@ tape::ArticulationStep CoupledStepper::predicted(const Part& part, const tape::S
   step.predicted = VectorXd(n + 1), step.inertia = MatrixXd::Zero(n + 1, n + 1);
   step.predicted.head(n) = inverse.solve(change(before, bullet_.state(part.robot), dof > before.q.size()));
   step.predicted[n] = 1;
+  const VectorXd loaded = step.predicted.head(n);
+  auto unloaded = step.predicted.head(n);
   const auto inertia = [&](bool drives) -> MatrixXd {
     const MatrixXd S = inverse.solve(inverse.solve(bullet_.response(part.robot, dt, drives)).transpose());
     const MatrixXd full = dt * dt * S.llt().solve(MatrixXd::Identity(n, n));
@@ -109,7 +118,9 @@ tape::ArticulationStep CoupledStepper::predicted(const Part& part, const tape::S
   };
   step.inertia.topLeftCorner(n, n) = inertia(true);
   if (robots_.exchange.schedule == Schedule::inertial) {
-    add_drives(part, inertia(false), T, step);
+    const VectorXd given = dt * dt * step.inertia.topLeftCorner(n, n).llt().solve(T.transpose() * load);
+    add_drives(part, inertia(false), T, given, step);
+    unloaded -= given;
   } else {
     step.inertia *= kHeavy;
   }
@@ -118,7 +129,7 @@ tape::ArticulationStep CoupledStepper::predicted(const Part& part, const tape::S
     const tape::Pose& now = state.bodies[static_cast<std::size_t>(part.bodies[l])].pose;
     MatrixXd J(6, n + 1);
     J.leftCols(n) = bullet_.jacobian(part.robot, part.links[l]) * T;
-    J.col(n) = twist(now, bullet_.link_pose(part.robot, part.links[l])) - J.leftCols(n) * step.predicted.head(n);
+    J.col(n) = twist(now, bullet_.link_pose(part.robot, part.links[l])) - J.leftCols(n) * loaded;
     gap2 = std::max(gap2, J.col(n).squaredNorm());
     step.jacobian.push_back(std::move(J));
   }
@@ -128,10 +139,10 @@ tape::ArticulationStep CoupledStepper::predicted(const Part& part, const tape::S
 
 /// External forces [robots][dof] from what the tape side exerts on the links.
 std::vector<robot::VecX> CoupledStepper::forces(const tape::StepReport& report) const {
-  std::vector<robot::VecX> tau(static_cast<std::size_t>(bullet_.robots()));
+  std::vector<robot::VecX> tau;
+  for (int r = 0; r < bullet_.robots(); ++r) tau.push_back(VectorXd::Zero(bullet_.dof(r)));
   for (std::size_t a = 0; a < parts_.size(); ++a) {
     VectorXd& sum = tau[static_cast<std::size_t>(parts_[a].robot)];
-    sum = VectorXd::Zero(bullet_.dof(parts_[a].robot));
     for (std::size_t l = 0; l < parts_[a].links.size(); ++l)
       sum += bullet_.jacobian(parts_[a].robot, parts_[a].links[l]).transpose() * wrench_of(report.articulations[a].links[l]);
   }
@@ -139,6 +150,20 @@ std::vector<robot::VecX> CoupledStepper::forces(const tape::StepReport& report) 
 }
 
 tape::StepReport CoupledStepper::step(tape::State& state, const tape::Exchange&) {
+  double whole = 0;
+  tape::StepReport report;
+  {
+    const tape::Stopwatch watch(whole);
+    report = step_both(state);
+  }
+  report.stages.push_back({"bullet", report_.bullet_ms});
+  report.stages.push_back({"exchange", whole - report_.bullet_ms - report_.tape_ms});
+  report.wall_ms = whole;
+  report.exchange_residual = report_.residual;
+  return report;
+}
+
+tape::StepReport CoupledStepper::step_both(tape::State& state) {
   const double dt = world_.setup.scene.time.dt;
   report_ = {};
   restore(state);
@@ -147,19 +172,47 @@ tape::StepReport CoupledStepper::step(tape::State& state, const tape::Exchange&)
   const robot::Snapshot start = bullet_.save();
   tape::State next = state;
   tape::StepReport report = robots_.exchange.schedule == Schedule::iterated ? step_in_turns(next, dt, start) : step_once(next, dt, start);
-  report.stages.push_back({"bullet", report_.bullet_ms});
-  report.exchange_residual = report_.residual;
   if (!report.ok) return report;
   next.outside = bullet_.save().numbers;
+  for (const VectorXd& of : load_) next.outside.insert(next.outside.end(), of.begin(), of.end());
+  exerted_ = report.articulations;
   state = std::move(next);
   note_mismatch(state);
   return report;
 }
 
+std::vector<RobotRecord> CoupledStepper::records() const {
+  std::vector<RobotRecord> records;
+  for (int r = 0; r < bullet_.robots(); ++r) {
+    const RobotPart& robot = robots_.robots[static_cast<std::size_t>(r)];
+    const RobotState state = bullet_.state(r);
+    const auto links = robot.model->links.size();
+    RobotRecord record{state.q, state.v.tail(state.q.size()), robot.start, bullet_.drive_effort(r), {}};
+    if (!scripts_.empty()) record.command = scripts_[static_cast<std::size_t>(r)].told_at(time_);
+    for (std::size_t l = 0; l < links; ++l) record.links.push_back(bullet_.link_pose(r, static_cast<int>(l)));
+    record.wrench.assign(links, Eigen::Matrix<double, 6, 1>::Zero());
+    records.push_back(std::move(record));
+  }
+  for (std::size_t a = 0; a < exerted_.size(); ++a)
+    for (std::size_t l = 0; l < parts_[a].links.size(); ++l)
+      records[static_cast<std::size_t>(parts_[a].robot)].wrench[static_cast<std::size_t>(parts_[a].links[l])] =
+          wrench_of(exerted_[a].links[l]);
+  return records;
+}
+
 void CoupledStepper::restore(const tape::State& state) {
+  load_.clear();
+  for (int r = 0; r < bullet_.robots(); ++r) load_.push_back(VectorXd::Zero(bullet_.dof(r)));
   if (state.outside.empty()) return bullet_.restore(start_);
+  std::vector<double> numbers = state.outside;
+  for (auto of = load_.rbegin(); of != load_.rend(); ++of) {
+    const auto size = static_cast<std::size_t>(of->size());
+    if (numbers.size() < size) break;
+    *of = Eigen::Map<const VectorXd>(numbers.data() + numbers.size() - size, of->size());
+    numbers.resize(numbers.size() - size);
+  }
   try {
-    bullet_.restore({state.outside});
+    bullet_.restore({numbers});
   } catch (const robot::InputError& e) {
     throw tape::InputError(std::string("the state holds other robots than the scene: ") + e.what());
   }
@@ -172,8 +225,8 @@ void CoupledStepper::command(const tape::State& state) {
     for (const RobotPart& robot : robots_.robots) scripts_.emplace_back(robot, state.events);
     events_ = state.events;
   }
-  for (std::size_t r = 0; r < scripts_.size(); ++r)
-    bullet_.command(static_cast<int>(r), scripts_[r].commands_at((state.step + 1) * world_.setup.scene.time.dt));
+  time_ = (state.step + 1) * world_.setup.scene.time.dt;
+  for (std::size_t r = 0; r < scripts_.size(); ++r) bullet_.command(static_cast<int>(r), scripts_[r].commands_at(time_));
 }
 
 /// Pairs that may have tape between them touch on the tape side, all others in Bullet.
@@ -202,17 +255,20 @@ std::vector<RobotState> CoupledStepper::robot_states() const {
 
 tape::StepReport CoupledStepper::step_once(tape::State& state, double dt, const robot::Snapshot& start) {
   const std::vector<RobotState> before = robot_states();
-  advance_bullet(start, dt, {});
+  advance_bullet(start, dt, load_);
   tape::Exchange exchange{.articulations = {}, .pinching = pinched_};
-  for (const Part& part : parts_)
-    exchange.articulations.push_back(predicted(part, state, before[static_cast<std::size_t>(part.robot)], dt));
-  std::vector<robot::Vec3> alone = momenta();
+  for (const Part& part : parts_) {
+    const auto robot = static_cast<std::size_t>(part.robot);
+    exchange.articulations.push_back(predicted(part, state, before[robot], dt, load_[robot]));
+  }
+  std::vector<robot::Vec3> loaded = momenta();
   tape::StepReport report = tape_->step(state, exchange);
+  report_.tape_ms += report.wall_ms;
   if (!report.ok || robots_.exchange.schedule == Schedule::kinematic) return report;
   const std::vector<robot::VecX> tau = forces(report);
-  const auto pushes = [](const robot::VecX& f) { return f.size() > 0 && !f.isZero(0); };
-  if (std::ranges::any_of(tau, pushes)) advance_bullet(start, dt, tau);  // else it has made the step already
-  book_momentum(report, alone, dt);
+  if (tau != load_) advance_bullet(start, dt, tau);  // else it has made the step already
+  book_momentum(report, loaded, dt);
+  load_ = tau;
   return report;
 }
 
@@ -229,8 +285,9 @@ tape::StepReport CoupledStepper::step_in_turns(tape::State& state, double dt, co
     state = first;
     tape::Exchange exchange{.articulations = {}, .pinching = pinched_};
     for (const Part& part : parts_)
-      exchange.articulations.push_back(predicted(part, state, before[static_cast<std::size_t>(part.robot)], dt));
+      exchange.articulations.push_back(predicted(part, state, before[static_cast<std::size_t>(part.robot)], dt, {}));
     report = tape_->step(state, exchange);
+    report_.tape_ms += report.wall_ms;
     if (!report.ok) return report;
     std::vector<robot::VecX> residual = forces(report);
     double size = 0, left = 0, along = 0, change2 = 0;
@@ -267,7 +324,7 @@ std::vector<robot::Vec3> CoupledStepper::momenta() const {
   return out;
 }
 
-void CoupledStepper::book_momentum(const tape::StepReport& report, const std::vector<robot::Vec3>& alone, double dt) {
+void CoupledStepper::book_momentum(const tape::StepReport& report, const std::vector<robot::Vec3>& loaded, double dt) {
   const std::vector<robot::Vec3> now = momenta();
   double given = 0, lost = 0;
   for (std::size_t a = 0; a < parts_.size(); ++a) {
@@ -278,7 +335,8 @@ void CoupledStepper::book_momentum(const tape::StepReport& report, const std::ve
     }
     if (robots_.robots[static_cast<std::size_t>(parts_[a].robot)].params.fixed_base) continue;
     given += dt * force.norm();
-    lost += (now[a] - alone[a] - dt * force).norm();
+    const robot::Vec3 before = load_[static_cast<std::size_t>(parts_[a].robot)].head<3>();
+    lost += (now[a] - loaded[a] - dt * (force - before)).norm();
   }
   if (given > 0) report_.residual = lost / given;
 }

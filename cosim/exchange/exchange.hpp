@@ -11,10 +11,19 @@ namespace cosim {
 struct ExchangeReport {
   int iterations = 1;                   ///< tape solves
   double bullet_ms = 0;                 ///< in Bullet, both passes
+  double tape_ms = 0;                   ///< in the tape solver
   double momentum_given = 0;            ///< [N s] sum over links of the magnitude of what the tape side gave them
   std::optional<double> residual = {};  ///< [1] what of it robots with a free base did not receive; none: none was touched
   int pinching = 0;                     ///< pairs of links that touch in the tape solver
   double mismatch = 0;                  ///< [m] farthest that a link's frame stands on the tape side from where Bullet has it
+};
+
+/// What there is to record of a robot at the end of a step.
+struct RobotRecord {
+  robot::VecX position, velocity, command, effort;  ///< [nj] rad or m, by s, of the drives' targets, N m or N
+  std::vector<robot::Pose> links;                   ///< [nl] X_WL
+  std::vector<Eigen::Matrix<double, 6, 1>> wrench =
+      {};  ///< [nl] N, N m: of the tape side on the link, about its origin, mean over the step
 };
 
 /// Unknowns of a robot in the exchange: independent joint motions, six more for a free base, and one that goes from 0 to 1 over a step
@@ -32,6 +41,7 @@ class CoupledStepper final : public tape::Stepper {
   std::vector<double> contact_force() const override { return tape_->contact_force(); }
   const robot::World& bullet() const { return bullet_; }
   const ExchangeReport& exchange() const { return report_; }
+  std::vector<RobotRecord> records() const;  ///< [robots]
 
  private:
   /// A robot on the tape side.
@@ -39,8 +49,10 @@ class CoupledStepper final : public tape::Stepper {
     int robot;
     std::vector<int> links, bodies;
   };
-  tape::ArticulationStep predicted(const Part& part, const tape::State& state, const robot::RobotState& before, double dt) const;
-  void add_drives(const Part& part, const Eigen::MatrixXd& bare, const Eigen::MatrixXd& T, tape::ArticulationStep& step) const;
+  tape::ArticulationStep predicted(const Part& part, const tape::State& state, const robot::RobotState& before, double dt,
+                                   const robot::VecX& load) const;
+  void add_drives(const Part& part, const Eigen::MatrixXd& bare, const Eigen::MatrixXd& T, const Eigen::VectorXd& given,
+                  tape::ArticulationStep& step) const;
   std::vector<robot::VecX> forces(const tape::StepReport& report) const;
   std::vector<robot::RobotState> robot_states() const;
   std::vector<robot::Vec3> momenta() const;
@@ -48,9 +60,10 @@ class CoupledStepper final : public tape::Stepper {
   void command(const tape::State& state);
   void see_to_pinching(const tape::State& state);
   void advance_bullet(const robot::Snapshot& start, double dt, const std::vector<robot::VecX>& tau);
+  tape::StepReport step_both(tape::State& state);
   tape::StepReport step_once(tape::State& state, double dt, const robot::Snapshot& start);
   tape::StepReport step_in_turns(tape::State& state, double dt, const robot::Snapshot& start);
-  void book_momentum(const tape::StepReport& report, const std::vector<robot::Vec3>& alone, double dt);
+  void book_momentum(const tape::StepReport& report, const std::vector<robot::Vec3>& loaded, double dt);
   void note_mismatch(const tape::State& state);
 
   RobotScene robots_;
@@ -61,8 +74,11 @@ class CoupledStepper final : public tape::Stepper {
   Pinching pinching_;
   std::vector<tape::Index2> pinched_;  // pairs of bodies, in this step
   std::vector<Part> parts_;
-  std::vector<double> events_;        // that scripts_ know of
-  std::vector<RobotScript> scripts_;  // [robots]
+  double time_ = 0;                                // [s] that the drives are told of
+  std::vector<double> events_;                     // that scripts_ know of
+  std::vector<robot::VecX> load_;                  // [robots][dof] that the tape side exerted in the last step, zero at the start
+  std::vector<tape::ArticulationReport> exerted_;  // in the last step
+  std::vector<RobotScript> scripts_;               // [robots]
   ExchangeReport report_;
 };
 

@@ -24,6 +24,12 @@ hid_t row_layout(const Shape& row_shape) {
   }
   return layout;
 }
+/// An array, with the folders in its name.
+hid_t create(hid_t file, const std::string& array, hid_t type, hid_t space, hid_t layout) {
+  const tape::Hdf5Handle folders(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  H5Pset_create_intermediate_group(folders, 1);
+  return H5Dcreate2(file, array.c_str(), type, space, folders, layout, H5P_DEFAULT);
+}
 }  // namespace
 
 Hdf5Writer::Hdf5Writer(const std::filesystem::path& name) : file_(name) {
@@ -45,9 +51,7 @@ void Hdf5Writer::require(bool success) const {
 
 void Hdf5Writer::write(const std::string& array, const void* values, hid_t type, const Shape& shape) {
   const tape::Hdf5Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
-  const tape::Hdf5Handle folders(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
-  H5Pset_create_intermediate_group(folders, 1);
-  const tape::Hdf5Handle data(H5Dcreate2(id_, array.c_str(), type, space, folders, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+  const tape::Hdf5Handle data(create(id_, array, type, space, H5P_DEFAULT), H5Dclose);
   require(data >= 0);
   if (product(shape) > 0) require(H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
 }
@@ -60,7 +64,7 @@ void Hdf5Writer::append(const std::string& array, const void* row, hid_t type, c
     size.insert(size.begin(), 0);
     const tape::Hdf5Handle space(H5Screate_simple(static_cast<int>(size.size()), size.data(), unlimited.data()), H5Sclose);
     const tape::Hdf5Handle layout(row_layout(row_shape), H5Pclose);
-    const tape::Hdf5Handle data(H5Dcreate2(id_, array.c_str(), type, space, H5P_DEFAULT, layout, H5P_DEFAULT), H5Dclose);
+    const tape::Hdf5Handle data(create(id_, array, type, space, layout), H5Dclose);
     require(data >= 0);
     size = row_shape;
   }

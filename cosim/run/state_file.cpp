@@ -8,7 +8,18 @@
 
 namespace cosim {
 namespace {
-constexpr const char* kFormat = "tape states 3";
+constexpr const char* kFormat = "tape states 4";
+
+constexpr const char* kAbout =
+    "SI units: m, s, kg, N, N m, rad. x: positions of the strips' vertices in the world. pose: of each body's frame B in the world, the "
+    "rotation "
+    "R_WB row by row, then the position. local: vertices of bodies in B. contact_force: N at each vertex. engagement: what adhesion is "
+    "left, 0 to 1. "
+    "part: 0 free tape, 1 collar, 2 cluster. robots/NAME/: position, velocity, command, effort of each joint in the order of attribute "
+    "joints.NAME (rad, m, "
+    "N m, N); links: of each link's frame in the world, in the order of attribute links.NAME, the position, then the quaternion w x y z; "
+    "wrench: of the "
+    "tape side on each link, force, then torque about the link's origin, in world axes, mean over the step. time: s at the end of step.";
 
 /// Matrices of equal size, one after the other.
 template <class T, class M>
@@ -29,6 +40,18 @@ std::vector<M> unflat(const std::vector<T>& values) {
 std::string lines(const std::vector<RecordedObject>& objects, std::string RecordedObject::*member) {
   std::string text;
   for (const RecordedObject& object : objects) text += object.*member + '\n';
+  return text;
+}
+
+std::vector<std::string> split(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> out;
+  for (std::string line; std::getline(stream, line);) out.push_back(line);
+  return out;
+}
+std::string joined_lines(const std::vector<std::string>& all) {
+  std::string text;
+  for (const std::string& line : all) text += line + '\n';
   return text;
 }
 
@@ -76,12 +99,24 @@ bool consistent(const RecordedFrame& frame, const RecordedMesh& mesh) {
 }
 }  // namespace
 
-RecordedMesh RecordedMesh::of(const World& world, std::string camera) {
+RecordedMesh RecordedMesh::of(const World& world, const RobotScene& robots, std::string camera, std::string settings) {
   const Assembly& a = world.assembly;
   const Scene& scene = world.setup.scene;
   const auto nv = static_cast<std::size_t>(a.surface_vertices);
-  RecordedMesh mesh{
-      .scene = scene.name, .objects = {}, .triangles = a.triangles, .rest = {}, .body = {}, .local = {}, .camera = std::move(camera)};
+  RecordedMesh mesh{.scene = scene.name,
+                    .objects = {},
+                    .triangles = a.triangles,
+                    .rest = {},
+                    .body = {},
+                    .local = {},
+                    .camera = std::move(camera),
+                    .robots = {},
+                    .settings = std::move(settings)};
+  for (const RobotPart& part : robots.robots) {
+    RecordedRobot& robot = mesh.robots.emplace_back(RecordedRobot{part.name, {}, {}});
+    for (const robot::Joint& joint : part.model->joints) robot.joints.push_back(joint.name);
+    for (const robot::Link& link : part.model->links) robot.links.push_back(link.name);
+  }
   const auto material = [&](int m) { return scene.materials[static_cast<std::size_t>(m)].name; };
   for (std::size_t s = 0; s < a.strips.size(); ++s) {
     mesh.objects.push_back(
@@ -102,14 +137,15 @@ RecordedMesh RecordedMesh::of(const World& world, std::string camera) {
   return mesh;
 }
 
-RecordedFrame RecordedFrame::of(const World& world, const State& state, std::vector<Real> contact_force) {
+RecordedFrame RecordedFrame::of(const World& world, const State& state, std::vector<Real> contact_force, std::vector<RobotRecord> robots) {
   RecordedFrame frame{.step = state.step,
                       .time = state.time,
                       .x = state.x,
                       .bodies = {},
                       .contact_force = std::move(contact_force),
                       .engagement = vertex_engagement(world, state),
-                      .part = tape_parts(world, state)};
+                      .part = tape_parts(world, state),
+                      .robots = std::move(robots)};
   for (int b = 0; b < world.first_cluster(); ++b) frame.bodies.push_back(state.bodies[static_cast<std::size_t>(b)].pose);
   frame.contact_force.resize(static_cast<std::size_t>(world.assembly.surface_vertices), 0);
   return frame;
@@ -129,6 +165,16 @@ StateWriter::StateWriter(const std::filesystem::path& name, const RecordedMesh& 
   file_.write_text("format", kFormat);
   file_.write_text("scene", mesh.scene);
   file_.write_text("camera", mesh.camera);
+  file_.write_text("about", kAbout);
+  file_.write_text("settings", mesh.settings);
+  std::vector<std::string> names;
+  for (const RecordedRobot& robot : mesh.robots) {
+    names.push_back(robot.name);
+    file_.write_text("joints." + robot.name, joined_lines(robot.joints));
+    file_.write_text("links." + robot.name, joined_lines(robot.links));
+  }
+  file_.write_text("robots", joined_lines(names));
+  robots_ = names;
   file_.write_text("names", lines(mesh.objects, &RecordedObject::name));
   file_.write_text("materials", lines(mesh.objects, &RecordedObject::material));
   file_.write("objects", objects, {mesh.objects.size(), 3});
@@ -160,13 +206,33 @@ void StateWriter::add(const RecordedFrame& frame) {
     for (TapePart part : frame.part) parts.push_back(static_cast<int>(part));
     file_.append("part", parts, {parts.size()});
   }
+  for (std::size_t r = 0; r < frame.robots.size(); ++r) add_robot("robots/" + robots_[r] + "/", frame.robots[r]);
   file_.reserve();
+}
+
+void StateWriter::add_robot(const std::string& folder, const RobotRecord& robot) {
+  const auto append = [&](const char* name, const robot::VecX& values) {
+    if (values.size() > 0)
+      file_.append(folder + name, std::vector<double>(values.begin(), values.end()), {static_cast<hsize_t>(values.size())});
+  };
+  append("position", robot.position), append("velocity", robot.velocity), append("command", robot.command), append("effort", robot.effort);
+  std::vector<double> poses, wrenches;
+  for (const robot::Pose& X : robot.links) {
+    const Eigen::Quaterniond q(X.linear());
+    poses.insert(poses.end(), {X.translation().x(), X.translation().y(), X.translation().z(), q.w(), q.x(), q.y(), q.z()});
+  }
+  for (const auto& wrench : robot.wrench) wrenches.insert(wrenches.end(), wrench.begin(), wrench.end());
+  file_.append(folder + "links", poses, {robot.links.size(), 7});
+  file_.append(folder + "wrench", wrenches, {robot.wrench.size(), 6});
 }
 
 StateReader::StateReader(const std::filesystem::path& name) : name_(name.string()), file_(name) {
   if (file_.read_text("format") != kFormat) throw InputError(name_ + ": not a recording of this version");
   mesh_.scene = file_.read_text("scene");
   mesh_.camera = file_.read_text("camera");
+  mesh_.settings = file_.read_text("settings");
+  for (const std::string& robot : split(file_.read_text("robots")))
+    mesh_.robots.push_back({robot, split(file_.read_text("joints." + robot)), split(file_.read_text("links." + robot))});
   mesh_.objects = read_objects(file_);
   mesh_.triangles = unflat<Index3>(file_.read_ints("triangles"));
   mesh_.rest = unflat<Vec2>(file_.read_reals("rest"));
@@ -178,6 +244,30 @@ StateReader::StateReader(const std::filesystem::path& name) : name_(name.string(
   if (!consistent(mesh_)) throw InputError(name_ + ": damaged: its arrays do not fit together");
 }
 
+RobotRecord StateReader::robot_at(const RecordedRobot& robot, int i) const {
+  const std::string folder = "robots/" + robot.name + "/";
+  const auto row = [&](const std::string& name) {
+    const std::vector<double> values = file_.read_row(folder + name, i);
+    return robot::VecX(Eigen::Map<const robot::VecX>(values.data(), static_cast<Eigen::Index>(values.size())));
+  };
+  RobotRecord record;
+  if (!robot.joints.empty())
+    record.position = row("position"), record.velocity = row("velocity"), record.command = row("command"), record.effort = row("effort");
+  const std::vector<double> poses = file_.read_row(folder + "links", i), wrenches = file_.read_row(folder + "wrench", i);
+  if (record.position.size() != std::ssize(robot.joints) || poses.size() != 7 * robot.links.size() ||
+      wrenches.size() != 6 * robot.links.size())
+    throw InputError(name_ + ": damaged: robot " + robot.name + " has other joints or links than it says");
+  for (std::size_t l = 0; l < robot.links.size(); ++l) {
+    const double* p = poses.data() + 7 * l;
+    robot::Pose X = robot::Pose::Identity();
+    X.linear() = Eigen::Quaterniond(p[3], p[4], p[5], p[6]).toRotationMatrix();
+    X.translation() = Vec3(p[0], p[1], p[2]);
+    record.links.push_back(X);
+    record.wrench.emplace_back(Eigen::Map<const Eigen::Matrix<double, 6, 1>>(wrenches.data() + 6 * l));
+  }
+  return record;
+}
+
 RecordedFrame StateReader::frame(int i) const {
   RecordedFrame frame{.step = static_cast<int>(file_.read_row("step", i)[0]),
                       .time = file_.read_row("time", i)[0],
@@ -185,7 +275,9 @@ RecordedFrame StateReader::frame(int i) const {
                       .bodies = {},
                       .contact_force = {},
                       .engagement = {},
-                      .part = {}};
+                      .part = {},
+                      .robots = {}};
+  for (const RecordedRobot& robot : mesh_.robots) frame.robots.push_back(robot_at(robot, i));
   if (mesh_.strip_vertices > 0) {
     frame.x = unflat<Vec3>(file_.read_row("x", i));
     frame.engagement = file_.read_row("engagement", i);

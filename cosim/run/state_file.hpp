@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "cosim/exchange/exchange.hpp"
 #include "cosim/run/hdf5_file.hpp"
 #include "tape/step/reduce.hpp"
 
@@ -14,6 +15,11 @@ struct RecordedObject {
   int first_triangle = 0, triangles = 0;
   bool strip = false;
 };
+struct RecordedRobot {
+  std::string name;
+  std::vector<std::string> joints, links;
+  bool operator==(const RecordedRobot&) const = default;
+};
 /// What a recording shows, constant over its frames.
 struct RecordedMesh {
   std::string scene;
@@ -24,8 +30,10 @@ struct RecordedMesh {
   std::vector<Vec3> local;  ///< [nv] m, in frame B; zero on strips
   int strip_vertices = 0;   ///< the first ones
   std::string camera;       ///< `camera` section of the scene, as YAML text; may be empty
+  std::vector<RecordedRobot> robots;
+  std::string settings;  ///< of the run and the version of the program, as text; may be empty
 
-  static RecordedMesh of(const World& world, std::string camera);
+  static RecordedMesh of(const World& world, const RobotScene& robots, std::string camera, std::string settings);
 };
 struct RecordedFrame {
   int step = 0;
@@ -35,15 +43,17 @@ struct RecordedFrame {
   std::vector<Real> contact_force;  ///< [nv] N, kept to 7 digits
   std::vector<Real> engagement;     ///< [strip vertices] what adhesion is left (vertex_engagement), kept to 7 digits
   std::vector<TapePart> part;       ///< [strip vertices]
+  std::vector<RobotRecord> robots;
 
-  static RecordedFrame of(const World& world, const State& state, std::vector<Real> contact_force);
+  static RecordedFrame of(const World& world, const State& state, std::vector<Real> contact_force, std::vector<RobotRecord> robots);
 };
 /// All vertices [nv] m of a frame.
 std::vector<Vec3> vertex_positions(const RecordedMesh& mesh, const RecordedFrame& frame);
 
 /// Writes state.h5. Arrays: triangles [nt,3], rest [nv,2] m, body [nv], local [nv,3] m, objects [n,3] (first triangle, triangles, 1 for
 /// a strip); and per frame: step, time [s], x [strip vertices,3] m, pose [bodies,12] (rotation row by row, position), contact_force [nv] N,
-/// engagement [strip vertices], part [strip vertices] (0 free, 1 collar, 2 cluster).
+/// engagement [strip vertices], part [strip vertices] (0 free, 1 collar, 2 cluster); of each robot in robots/NAME/: position, velocity,
+/// command, effort [joints], links [links,7] (position, quaternion w x y z), wrench [links,6]. Attribute `about` says all this, with units.
 class StateWriter {
  public:
   StateWriter(const std::filesystem::path& name, const RecordedMesh& mesh);
@@ -51,7 +61,9 @@ class StateWriter {
   void commit() { file_.commit(); }
 
  private:
+  void add_robot(const std::string& folder, const RobotRecord& robot);
   Hdf5Writer file_;
+  std::vector<std::string> robots_;
 };
 
 class StateReader {
@@ -63,6 +75,7 @@ class StateReader {
   RecordedFrame frame(int i) const;
 
  private:
+  RobotRecord robot_at(const RecordedRobot& robot, int i) const;
   std::string name_;
   Hdf5Reader file_;
   RecordedMesh mesh_;

@@ -66,7 +66,8 @@ TEST_F(ReplayFile, NamesSceneRecordingJointsAndCamera) {
 TEST_F(ReplayFile, RobotsMoveAsRecordedBySignScaleUnitAndOffset) {
   RobotScene robots = arm_and_hand();
   add_motions(read(kHead + "start: 0.5\n" + kJoints), robots);
-  const std::vector<robot::JointCommand> arm = commands_at(robots.robots[0], 1), hand = commands_at(robots.robots[1], 0.25);
+  const std::vector<robot::JointCommand> arm = RobotScript(robots.robots[0], {}).commands_at(1),
+                                         hand = RobotScript(robots.robots[1], {}).commands_at(0.25);
   EXPECT_NEAR(arm[0].position, 0.025, 1e-12) << "the slide at 1.5 s: 10 + 10 t mm";
   EXPECT_NEAR(arm[1].position, 0.5 - 45 * std::numbers::pi / 180, 1e-12) << "the shoulder: 30 t deg";
   EXPECT_NEAR(hand[0].position, 1.2 * 0.375, 1e-12) << "the thumb at 0.75 s: t / 2";

@@ -21,7 +21,19 @@ const RecordedMesh kMesh{.scene = "two triangles",
                          .body = {-1, -1, -1, 0, 0, 0},
                          .local = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
                          .strip_vertices = 3,
-                         .camera = "fov: 30\n"};
+                         .camera = "fov: 30\n",
+                         .robots = {{"arm", {"shoulder", "elbow"}, {"base", "upper", "lower"}}, {"stand", {}, {"post"}}},
+                         .settings = "{}"};
+/// A robot whose numbers tell each other apart.
+cosim::RobotRecord robot_record(int joints, int links, double first) {
+  const auto count = [&](double from) { return robot::VecX(robot::VecX::LinSpaced(joints, from, from + joints - 1)); };
+  cosim::RobotRecord record{count(first), count(first + 10), count(first + 20), count(first + 30), {}};
+  for (int l = 0; l < links; ++l) {
+    record.links.emplace_back(Eigen::Translation3d(first, l, 0) * Eigen::AngleAxisd(0.1 * l, Eigen::Vector3d::UnitX()));
+    record.wrench.emplace_back(Eigen::Matrix<double, 6, 1>::LinSpaced(first + l, first + l + 5));
+  }
+  return record;
+}
 
 RecordedFrame frame(int step) {
   Pose quarter_turn_about_z;
@@ -33,7 +45,8 @@ RecordedFrame frame(int step) {
           .bodies = {quarter_turn_about_z},
           .contact_force = {0.5, 1, 0, 0, 0, 0.25},
           .engagement = {0, 0.5, 1},
-          .part = {tape::TapePart::free, tape::TapePart::collar, tape::TapePart::cluster}};
+          .part = {tape::TapePart::free, tape::TapePart::collar, tape::TapePart::cluster},
+          .robots = {robot_record(2, 3, step), robot_record(0, 1, 7)}};
 }
 
 class StateFile : public testing::Test {
@@ -67,6 +80,18 @@ TEST_F(StateFile, ReadsBackWhatWasWritten) {
   EXPECT_EQ(read.contact_force, written.contact_force);
   EXPECT_EQ(read.engagement, written.engagement);
   EXPECT_EQ(read.part, written.part);
+  EXPECT_EQ(reader.mesh().robots, kMesh.robots);
+  EXPECT_EQ(reader.mesh().settings, "{}");
+  ASSERT_EQ(read.robots.size(), 2u);
+  for (std::size_t r = 0; r < 2; ++r) {
+    const cosim::RobotRecord &a = read.robots[r], &b = written.robots[r];
+    EXPECT_EQ(a.position, b.position);
+    EXPECT_EQ(a.velocity, b.velocity);
+    EXPECT_EQ(a.command, b.command);
+    EXPECT_EQ(a.effort, b.effort);
+    EXPECT_EQ(a.wrench, b.wrench);
+    for (std::size_t l = 0; l < b.links.size(); ++l) EXPECT_TRUE(a.links[l].isApprox(b.links[l], 1e-15));
+  }
 }
 TEST_F(StateFile, VerticesOfBodiesFollowTheirPose) {
   const std::vector<Vec3> x = vertex_positions(kMesh, frame(2));

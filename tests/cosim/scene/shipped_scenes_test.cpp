@@ -31,6 +31,7 @@ struct Surface {
   std::vector<tape::Index3> triangles;
   bool is_strip;
   bool outside = false;  // what these have of each other is Bullet's matter
+  // Links stand by a roll as it is once settled, which World::build looks at; here it is as wound. Its own gaps
   bool of_roll = false;  // its gaps are those of its layers: tests/tape/step/roll_gaps_test.cpp
   std::vector<tape::Vec2> rest = {};
 };
@@ -86,7 +87,8 @@ TEST(ShippedScenes, StartWithGapsAboveHalfTheActivationDistance) {
     const std::vector<Surface> all = surfaces(scene);
     for (const Surface& a : all)
       for (const Surface& b : all)
-        if ((&a != &b || a.is_strip) && !(a.of_roll && b.of_roll) && !(a.outside && b.outside)) {
+        if ((&a != &b || a.is_strip) && !(a.of_roll && b.of_roll) && !(a.outside && b.outside) && !(a.of_roll && b.outside) &&
+            !(a.outside && b.of_roll)) {
           EXPECT_GE(distance(a, b, 0.02) - a.xi - b.xi, 0.5 * scene.dhat()) << path.filename() << ": " << a.name << " and " << b.name;
         }
   }

@@ -70,7 +70,7 @@ TEST(Failure, WhereTheExactHessianIsIndefiniteTheProjectedOneStepsIn) {
   auto setup = test::strip_setup(strip);
   const StripMesh mesh = make_strip_mesh(strip.mesh, setup.scene.films[0].width, 1);
   setup.scene.grips = {test::hold("wall", root_vertices(mesh, 1e-9)), test::hold("push", tip_vertices(mesh, 1e-9))};
-  setup.scene.grips[1].motion = {{0, Vec3::Zero()}, {0.05, Vec3(-5e-4, 0, 0)}};
+  setup.scene.grips[1].motion = {{0, 0.05, Vec3(-5e-4, 0, 0)}};
   int fallbacks[2];
   for (const HessianMode mode : {HessianMode::exact, HessianMode::projected}) {
     setup.newton.hessian = mode;

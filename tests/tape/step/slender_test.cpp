@@ -256,7 +256,7 @@ TEST(Catenary, AStripHeldAtBothEndsSagsLikeAChain) {
   setup.newton.velocity_tol = 1e-6;
   const StripMesh mesh = make_strip_mesh(strip.mesh, 0.005, 1);
   setup.scene.grips = {hold("left", root_vertices(mesh, 1e-9)), hold("right", tip_vertices(mesh, 1e-9))};
-  setup.scene.grips[1].motion = {{0, Vec3::Zero()}, {1, Vec3(-0.1, 0, 0)}};
+  setup.scene.grips[1].motion = {{0, 1, Vec3(-0.1, 0, 0)}};
   Simulation simulation(setup);
   simulation.run_to(3);
   EXPECT_TRUE(simulation.broken.empty()) << simulation.broken.front();
@@ -276,7 +276,7 @@ TEST(Stretch, AStVKStripPullsWithItsClosedForm) {
     const StripMesh mesh = make_strip_mesh(setup.scene.strips[0].mesh, 0.019, 1);
     setup.scene.grips = {hold("root", root_vertices(mesh, 1e-9)), hold("tip", tip_vertices(mesh, 1e-9))};
     for (Grip& grip : setup.scene.grips) grip.stiffness = 1e5 * 171 / 0.05;  // of the strip's: what the grips give is none of its stretch
-    setup.scene.grips[1].motion = {{0, Vec3::Zero()}, {1, Vec3(0.05 * (stretch - 1), 0, 0)}};
+    setup.scene.grips[1].motion = {{0, 1, Vec3(0.05 * (stretch - 1), 0, 0)}};
     Simulation simulation(setup);
     simulation.run_to(3);
     EXPECT_NEAR(simulation.report().grip_force[1].x(), force, 1e-3 * force) << "at stretch " << stretch;
