@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "tape/core/execution.hpp"
 #include "tape/model/primitives.hpp"
@@ -32,6 +33,19 @@ tape::Setup free_strip(Real dt, Real tolerance) {
   s.scene.time.dt = dt;
   s.newton.velocity_tol = tolerance;
   return s;
+}
+/// A finger of 7.5e-6 kg m^2 about its hinge, driven by 50 N m/rad and 0.5 N m s/rad over ten substeps to 2.4 mm below the strip.
+RobotScene finger(double effort = std::numeric_limits<double>::infinity()) {
+  RobotModel model{.name = "finger"};
+  model.links = {{.name = "palm"}, box_link("tip", 0.004, Vec3(0.01, 0.01, 0.01), Vec3(0.04, 0, 0))};
+  model.links[1].inertial = {0.004, Vec3(0.04, 0, 0), Vec3(6e-8, 7.5e-6 - 0.004 * 0.0016, 7.5e-6 - 0.004 * 0.0016).asDiagonal()};
+  model.joints = {joint("hinge", robot::JointType::revolute, Vec3::UnitY(), Vec3::Zero())};
+  RobotScene scene;
+  scene.world.gravity.setZero();
+  scene.robots = {part("finger", model, Vec3(-0.04, 0, 0.0056))};
+  scene.robots[0].params.drives = {{.kp = 50, .kd = 0.5, .effort = effort}};
+  scene.robots[0].motions = {stand("hinge", 0.06)};
+  return scene;
 }
 }  // namespace
 
@@ -86,17 +100,9 @@ TEST(Exchange, RunsRepeatToTheBitAndGoOnFromAState) {
   first.state.outside.pop_back();
   EXPECT_THROW(first.step(), tape::InputError);
 }
-/// A finger of 7.5e-6 kg m^2 about its hinge, driven by 50 N m/rad and 0.5 N m s/rad over ten substeps, meets a strip that two grips hold.
+/// The finger meets a strip that two grips hold.
 TEST(Exchange, ADrivenFingerGivesWayAsItsDriveAloneWould) {
-  RobotModel model{.name = "finger"};
-  model.links = {{.name = "palm"}, box_link("tip", 0.004, Vec3(0.01, 0.01, 0.01), Vec3(0.04, 0, 0))};
-  model.links[1].inertial = {0.004, Vec3(0.04, 0, 0), Vec3(6e-8, 7.5e-6 - 0.004 * 0.0016, 7.5e-6 - 0.004 * 0.0016).asDiagonal()};
-  model.joints = {joint("hinge", robot::JointType::revolute, Vec3::UnitY(), Vec3::Zero())};
-  RobotScene scene;
-  scene.world.gravity.setZero();
-  scene.robots = {part("finger", model, Vec3(-0.04, 0, 0.0056))};
-  scene.robots[0].params.drives = {{.kp = 50, .kd = 0.5}};
-  scene.robots[0].motions = {stand("hinge", 0.06)};  // 2.4 mm down at the tip
+  const RobotScene scene = finger();
   tape::Setup setup = free_strip(0.01, 1e-6);
   setup.scene.grips = {tape::test::hold("left", {0, 1, 2, 3})};
   const int last = static_cast<int>(tape::World::build(setup).assembly.x.size());
@@ -136,15 +142,7 @@ TEST(Exchange, APadPressesTheTapeWithItsDrivesForce) {
 /// The finger again, with a box under the strip: its drive comes to its limit as soon as it presses.
 TEST(Exchange, ADriveAtItsLimitPressesWithThat) {
   constexpr Real kLimit = 0.05;  // [N m], 1.25 N at the tip
-  RobotModel model{.name = "finger"};
-  model.links = {{.name = "palm"}, box_link("tip", 0.004, Vec3(0.01, 0.01, 0.01), Vec3(0.04, 0, 0))};
-  model.links[1].inertial = {0.004, Vec3(0.04, 0, 0), Vec3(6e-8, 7.5e-6 - 0.004 * 0.0016, 7.5e-6 - 0.004 * 0.0016).asDiagonal()};
-  model.joints = {joint("hinge", robot::JointType::revolute, Vec3::UnitY(), Vec3::Zero())};
-  RobotScene scene;
-  scene.world.gravity.setZero();
-  scene.robots = {part("finger", model, Vec3(-0.04, 0, 0.0056))};
-  scene.robots[0].params.drives = {{.kp = 50, .kd = 0.5, .effort = kLimit}};
-  scene.robots[0].motions = {stand("hinge", 0.06)};
+  const RobotScene scene = finger(kLimit);
   tape::Setup setup = free_strip(0.01, 1e-5);
   tape::test::add_body(setup, "box", tape::box_mesh(Vec3(0.1, 0.05, 0.02)), tape::Motion::fixed, Vec3(0, 0, -0.0103));
   Coupled both(setup, scene);
