@@ -1,0 +1,328 @@
+#include "tape/cutting/kerf.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "tape/cutting/outline.hpp"
+#include "tape/cutting/refine.hpp"
+#include "tape/math/plane.hpp"
+
+namespace tape {
+namespace {
+constexpr Real kRadian = std::numbers::pi / 180;
+constexpr Real kGoodAngle = 25 * kRadian;  // [rad] below this a triangle is mended
+constexpr Real kStandOff = 0.6;            // cells; vertices inside that are nearer to a side of the outline go
+constexpr Real kNothing = 1e-3;            // cells; what is thinner counts as nothing
+constexpr Real kRoom = 1.2;                // longest edges of a triangle between the kerf and the rest of the mesh
+constexpr Real kWindows[] = {1, 2, 4};     // cells or kerf widths; over which a serration that is too fine is averaged
+
+constexpr const char* kCutsNothing = "the line cuts nothing";
+
+struct Corners {
+  const Vec2 &a, &b, &c;
+};
+Corners corners(const StripMesh& mesh, int t) {
+  const Index3& v = mesh.triangles[t];
+  return {mesh.rest[v[0]], mesh.rest[v[1]], mesh.rest[v[2]]};
+}
+Real longest_edge(const Corners& t) { return std::max({(t.b - t.a).norm(), (t.c - t.b).norm(), (t.a - t.c).norm()}); }
+Real shortest_edge(const Corners& t) { return std::min({(t.b - t.a).norm(), (t.c - t.b).norm(), (t.a - t.c).norm()}); }
+std::string text(const Vec2& p) { return "[" + to_text(p.x()) + ", " + to_text(p.y()) + "] m"; }
+
+/// Connected part of each vertex, numbered by its first vertex; -1 where no triangle is.
+std::vector<int> pieces_of(const StripMesh& mesh) {
+  std::vector<int> root(mesh.rest.size(), -1);
+  const auto find = [&](int v) {
+    while (root[v] != v) v = root[v] = root[root[v]];
+    return v;
+  };
+  for (const Index3& t : mesh.triangles)
+    for (int v : t) root[v] = v;
+  for (const Index3& t : mesh.triangles)
+    for (int k = 1; k < 3; ++k) {
+      const auto [low, high] = std::minmax({find(t[0]), find(t[k])});
+      root[high] = low;
+    }
+  int pieces = 0;
+  std::vector<int> piece(mesh.rest.size(), -1);
+  for (int v = 0; v < static_cast<int>(mesh.rest.size()); ++v)
+    if (root[v] >= 0) piece[v] = root[v] == v ? pieces++ : piece[find(v)];
+  return piece;
+}
+
+/// Those of `triangles` that the kerf may meet, and some around.
+std::vector<int> triangles_near(const StripMesh& mesh, const std::vector<int>& triangles, const Line& line, Real reach) {
+  Vec2 low = line.front(), high = line.front();
+  for (const Vec2& p : line) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  std::vector<int> near;
+  for (int t : triangles) {
+    const Corners at = corners(mesh, t);
+    const Real limit = reach + kRoom * longest_edge(at);
+    const auto is_near = [&](const Vec2& p) {
+      return (p.array() >= low.array() - limit).all() && (p.array() <= high.array() + limit).all() && distance_to_line(p, line) < limit;
+    };
+    if (is_near(at.a) || is_near(at.b) || is_near(at.c)) near.push_back(t);
+  }
+  return near;
+}
+
+/// The triangle that p lies in, or of those the one that it is least far outside of.
+struct Place {
+  int triangle = -1;
+  Vec3 weight = Vec3::Constant(-1e30);
+};
+Place locate(const StripMesh& mesh, const std::vector<int>& triangles, const Vec2& p) {
+  Place best;
+  for (int t : triangles) {
+    const Corners at = corners(mesh, t);
+    const Vec3 weight = barycentric(p, at.a, at.b, at.c);
+    if (weight.minCoeff() > best.weight.minCoeff()) best = {t, weight};
+  }
+  return best;
+}
+
+Parent parent_of(const StripMesh& mesh, const std::vector<int>& triangles, const Vec2& p) {
+  const Place place = locate(mesh, triangles, p);
+  const Vec3 weight = place.weight.cwiseMax(0);  // a point on an edge of the strip may be outside by rounding
+  return {place.triangle, weight / weight.sum()};
+}
+
+/// What is wrong with the triangles from `first` on, or with how any of them meet; empty: nothing.
+std::string flaw(const StripMesh& mesh, int first, Real shortest, Real angle) {
+  std::map<std::pair<int, int>, int> edges;
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
+    const Index3& v = mesh.triangles[t];
+    for (int k = 0; k < 3; ++k)
+      if (!edges.insert({{v[k], v[(k + 1) % 3]}, t}).second) return "triangles would overlap at " + text(mesh.rest[v[k]]);
+    if (t < first) continue;
+    const Corners at = corners(mesh, t);
+    if (!(turn(at.a, at.b, at.c) > 0)) return "a triangle without area would be left at " + text(at.a);
+    if (const Real smallest = smallest_angle(at.a, at.b, at.c); smallest < angle)
+      return "a triangle with an angle of " + to_text(std::round(smallest / kRadian * 10) / 10) + " deg would be left at " + text(at.a) +
+             " (allowed: " + to_text(angle / kRadian) + "): the kerf leaves too little, or meets an edge too sharply";
+    if (Real edge = shortest_edge(at); edge < shortest)
+      return "an edge of " + to_text(edge) + " m would be left at " + text(at.a) + " (allowed: " + to_text(shortest) + ")";
+  }
+  std::vector<char> on_rim(mesh.rest.size(), 0);
+  for (const auto& [edge, t] : edges)
+    if (!edges.contains({edge.second, edge.first}) && std::exchange(on_rim[edge.first], 1))
+      return "two parts would hang together by one point at " + text(mesh.rest[edge.first]);
+  return "";
+}
+
+Real area(const StripMesh& mesh) {
+  Real twice = 0;
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
+    const Corners at = corners(mesh, t);
+    twice += turn(at.a, at.b, at.c);
+  }
+  return twice / 2;
+}
+
+Cut refused(const std::string& reason) {
+  Cut cut;
+  cut.refusal = reason;
+  return cut;
+}
+
+/// Cuts one mesh along one line or another.
+class Cutter {
+ public:
+  Cutter(const StripMesh& mesh, const std::vector<int>& near, Real width, const KerfParams& params)
+      : mesh_(mesh),
+        near_(near),
+        cell_(cell_size(mesh)),
+        width_(width),
+        shortest_(std::min(params.min_width * cell_, 0.9 * width)),
+        params_(params) {}
+
+  Cut cut(Line line) const {
+    line.front() = through_edge(line[0], line[1]);
+    line.back() = through_edge(line[line.size() - 1], line[line.size() - 2]);
+    const Patch patch = make_patch(mesh_, triangles_near(mesh_, near_, line, width_));
+    const Outline outline = without_kerf(mesh_, patch, line, width_, {cell_, shortest_, kNothing * cell_});
+    if (outline.removed < kNothing * cell_ * cell_) return refused(kCutsNothing);
+    if (!outline.refusal.empty()) return refused(outline.refusal);
+    if (outline.sides.empty() && patch.triangles.size() == mesh_.triangles.size()) return refused("nothing would be left");
+
+    Real was = kGoodAngle;
+    for (int t : patch.triangles) {
+      const Corners at = corners(mesh_, t);
+      was = std::min(was, smallest_angle(at.a, at.b, at.c));
+    }
+    const std::vector<int> inner = inner_vertices(patch, outline);
+    std::vector<Vec2> inner_points;
+    for (int v : inner) inner_points.push_back(mesh_.rest[v]);
+    Fresh fresh{{}, outline.vertex};
+    if (!outline.sides.empty()) fresh.is = triangulate(outline, inner_points, was, shortest_);
+    if (!outline.sides.empty() && fresh.is.triangles.empty()) return refused("the outline of what is left would cross itself");
+    fresh.vertex.insert(fresh.vertex.end(), inner.begin(), inner.end());
+    fresh.vertex.resize(fresh.is.points.size(), -1);
+
+    Cut out = assemble(patch, fresh);
+    out.kerf_area = outline.removed;
+    const int kept = static_cast<int>(std::count_if(out.new_triangle.begin(), out.new_triangle.end(), [](int t) { return t >= 0; }));
+    out.refusal = flaw(out.mesh, kept, shortest_, std::min(params_.min_angle * kRadian, was / 2));
+    if (out && std::fabs(area(out.mesh) + out.kerf_area - area(mesh_)) > 1e-12 * area(mesh_)) out.refusal = "the areas would not add up";
+    if (!out) return refused(out.refusal);
+    out.smallest_angle = fresh.is.smallest_angle / kRadian;
+    return out;
+  }
+
+ private:
+  struct Fresh {
+    Triangulation is;
+    std::vector<int> vertex;  // of the old mesh, -1: new
+  };
+  bool inside(const Vec2& p) const { return locate(mesh_, near_, p).weight.minCoeff() >= -1e-9; }
+
+  /// An end of the line, moved on if it stops short of an edge of the strip or its flat end would.
+  Vec2 through_edge(const Vec2& end, const Vec2& before) const {
+    const Vec2 along = (end - before).normalized(), across = width_ / 2 * left_of(along);
+    const Real reach = params_.edge_reach * cell_;
+    if (inside(end + reach * along)) return end;
+    for (Real more : {0.0, reach, reach + width_ / 2, reach + width_}) {
+      const Vec2 moved = end + more * along;
+      if (!inside(moved) && !inside(moved - across) && !inside(moved + across)) return moved;
+    }
+    return end + (reach + 2 * width_) * along;
+  }
+
+  /// Vertices of the patch alone that are well inside the outline.
+  std::vector<int> inner_vertices(const Patch& patch, const Outline& outline) const {
+    std::vector<char> taken = patch.held;
+    for (int v : outline.vertex)
+      if (v >= 0) taken[v] = 1;
+    std::vector<int> found;
+    for (int t : patch.triangles)
+      for (int v : mesh_.triangles[t])
+        if (!std::exchange(taken[v], 1) && is_well_inside(outline, mesh_.rest[v])) found.push_back(v);
+    return found;
+  }
+  bool is_well_inside(const Outline& outline, const Vec2& p) const {
+    bool within = false;  // by the number of sides on a ray
+    for (std::size_t s = 0; s < outline.sides.size(); ++s) {
+      const Vec2 &a = outline.points[outline.sides[s][0]], &b = outline.points[outline.sides[s][1]];
+      if (!outline.seam[s] && distance_to_segment(p, a, b) < kStandOff * cell_) return false;
+      if ((a.y() > p.y()) != (b.y() > p.y()) && (turn(a, b, p) > 0) == (b.y() > a.y())) within = !within;
+    }
+    return within;
+  }
+
+  Cut assemble(const Patch& patch, const Fresh& fresh) const {
+    Cut out;
+    std::vector<char> used(fresh.is.points.size(), 0);
+    for (const Index3& t : fresh.is.triangles)
+      for (int i : t) used[i] = 1;
+    std::vector<char> kept = patch.held;
+    for (std::size_t i = 0; i < used.size(); ++i)
+      if (used[i] && fresh.vertex[i] >= 0) kept[fresh.vertex[i]] = 1;
+    out.new_vertex.assign(mesh_.rest.size(), -1);
+    const auto add = [&](const Vec2& p) {
+      out.mesh.rest.push_back(p);
+      return static_cast<int>(out.mesh.rest.size()) - 1;
+    };
+    for (std::size_t v = 0; v < kept.size(); ++v)
+      if (kept[v]) out.new_vertex[v] = add(mesh_.rest[v]);
+    std::vector<int> index(used.size(), -1);
+    for (std::size_t i = 0; i < used.size(); ++i)
+      if (used[i]) index[i] = fresh.vertex[i] >= 0 ? out.new_vertex[fresh.vertex[i]] : add(fresh.is.points[i]);
+
+    std::map<std::array<int, 3>, Index3> triangles;  // of the patch, by their sorted vertices
+    for (const Index3& t : fresh.is.triangles) {
+      const Index3 v(index[t[0]], index[t[1]], index[t[2]]);
+      triangles[sorted(v)] = v;
+    }
+    std::vector<char> in_patch(mesh_.triangles.size(), 0);
+    for (int t : patch.triangles) in_patch[t] = 1;
+    out.new_triangle.assign(mesh_.triangles.size(), -1);
+    for (int t = 0; t < static_cast<int>(in_patch.size()); ++t) {
+      const Index3& old = mesh_.triangles[t];
+      const Index3 v(out.new_vertex[old[0]], out.new_vertex[old[1]], out.new_vertex[old[2]]);
+      if (in_patch[t] && triangles.erase(sorted(v)) == 0) continue;
+      out.new_triangle[t] = static_cast<int>(out.mesh.triangles.size());
+      out.mesh.triangles.push_back(v);
+      out.source.push_back(t);
+    }
+    for (const auto& [key, v] : triangles) {
+      out.mesh.triangles.push_back(v);
+      out.source.push_back(locate(mesh_, patch.triangles, (out.mesh.rest[v[0]] + out.mesh.rest[v[1]] + out.mesh.rest[v[2]]) / 3).triangle);
+    }
+    number(out, parents(out, patch));
+    return out;
+  }
+  static std::array<int, 3> sorted(const Index3& t) {
+    std::array<int, 3> key{t[0], t[1], t[2]};
+    std::sort(key.begin(), key.end());
+    return key;
+  }
+  std::vector<Parent> parents(const Cut& cut, const Patch& patch) const {
+    std::vector<Parent> parent(cut.mesh.rest.size(), Parent{-1, Vec3::Zero()});
+    for (int t = 0; t < static_cast<int>(mesh_.triangles.size()); ++t)
+      for (int k = 0; k < 3; ++k)
+        if (const int v = cut.new_vertex[mesh_.triangles[t][k]]; v >= 0 && parent[v].triangle < 0) parent[v] = {t, Vec3::Unit(k)};
+    for (std::size_t v = 0; v < parent.size(); ++v)
+      if (parent[v].triangle < 0) parent[v] = parent_of(mesh_, patch.triangles, cut.mesh.rest[v]);
+    return parent;
+  }
+  static void number(Cut& out, const std::vector<Parent>& parent) {
+    const std::vector<int> rank = number_by_x(out.mesh);
+    out.parent.resize(parent.size());
+    for (std::size_t v = 0; v < parent.size(); ++v) out.parent[rank[v]] = parent[v];
+    for (int& v : out.new_vertex)
+      if (v >= 0) v = rank[v];
+    out.piece = pieces_of(out.mesh);
+    out.pieces = *std::max_element(out.piece.begin(), out.piece.end()) + 1;
+  }
+
+  const StripMesh& mesh_;
+  const std::vector<int>& near_;
+  Real cell_, width_, shortest_;  // [m]
+  const KerfParams& params_;
+};
+
+/// The line itself, and what to try if a kerf cannot follow it.
+std::vector<Line> lines_to_try(const Line& line, Real tolerance, Real window) {
+  std::vector<Line> lines{simplified(line, tolerance)};
+  for (Real windows : kWindows) lines.push_back(simplified(averaged(line, windows * window), tolerance));
+  return lines;
+}
+}  // namespace
+
+Real cell_size(const StripMesh& mesh) { return std::sqrt(2 * area(mesh) / static_cast<Real>(mesh.triangles.size())); }
+
+Cut cut_kerf(const StripMesh& mesh, const Line& blade, Real width, const KerfParams& params, int within) {
+  require_valid(params, "cut");
+  if (!(std::isfinite(width) && width > 0)) throw InputError("cut.width = " + to_text(width) + ": allowed is > 0 m");
+  Line line;
+  for (const Vec2& p : blade) {
+    if (!p.allFinite()) throw InputError("cut: point " + std::to_string(line.size()) + " of the line is not finite");
+    if (line.empty() || p != line.back()) line.push_back(p);
+  }
+  if (line.size() < 2) return refused("the line is a point");
+
+  const std::vector<int> piece = pieces_of(mesh);
+  std::vector<int> candidates;
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t)
+    if (within < 0 || piece[mesh.triangles[t][0]] == piece[mesh.triangles[within][0]]) candidates.push_back(t);
+  const Real cell = cell_size(mesh), window = std::max(cell, width);
+  const std::vector<int> near = triangles_near(mesh, candidates, line, 4 * window);
+  if (near.empty()) return refused(kCutsNothing);
+
+  const Cutter cutter(mesh, near, width, params);
+  std::optional<Cut> first;
+  for (const Line& followed : lines_to_try(line, params.tolerance * cell, window)) {
+    Cut cut = cutter.cut(followed);
+    if (cut) cut.deviation = deviation(line, followed);
+    if (cut) return cut;
+    if (!first) first = std::move(cut);
+    if (first->refusal == kCutsNothing) break;
+  }
+  return *first;
+}
+}  // namespace tape
