@@ -21,6 +21,7 @@ constexpr Real kNothing = 1e-3;            // cells; what is thinner counts as n
 constexpr Real kRoom = 1.2;                // longest edges of a triangle between the kerf and the rest of the mesh
 constexpr Real kWindows[] = {1, 2, 4};     // cells or kerf widths; over which a serration that is too fine is averaged
 
+constexpr Real kTie = 1e-9;  // [rad]
 constexpr const char* kCutsNothing = "the line cuts nothing";
 
 struct Corners {
@@ -175,6 +176,7 @@ class Cutter {
   }
 
  private:
+  using ByVertices = std::map<std::array<int, 3>, Index3>;  ///< triangles by their sorted vertices
   struct Fresh {
     Triangulation is;
     std::vector<int> vertex;  // of the old mesh, -1: new
@@ -233,17 +235,17 @@ class Cutter {
     for (std::size_t i = 0; i < used.size(); ++i)
       if (used[i]) index[i] = fresh.vertex[i] >= 0 ? out.new_vertex[fresh.vertex[i]] : add(fresh.is.points[i]);
 
-    std::map<std::array<int, 3>, Index3> triangles;  // of the patch, by their sorted vertices
+    ByVertices triangles;  // of the patch
     for (const Index3& t : fresh.is.triangles) {
       const Index3 v(index[t[0]], index[t[1]], index[t[2]]);
       triangles[sorted(v)] = v;
     }
+    keep_diagonals(patch, out, triangles);
     std::vector<char> in_patch(mesh_.triangles.size(), 0);
     for (int t : patch.triangles) in_patch[t] = 1;
     out.new_triangle.assign(mesh_.triangles.size(), -1);
     for (int t = 0; t < static_cast<int>(in_patch.size()); ++t) {
-      const Index3& old = mesh_.triangles[t];
-      const Index3 v(out.new_vertex[old[0]], out.new_vertex[old[1]], out.new_vertex[old[2]]);
+      const Index3 v = renamed(mesh_.triangles[t], out);
       if (in_patch[t] && triangles.erase(sorted(v)) == 0) continue;
       out.new_triangle[t] = static_cast<int>(out.mesh.triangles.size());
       out.mesh.triangles.push_back(v);
@@ -256,6 +258,29 @@ class Cutter {
     number(out, parents(out, patch));
     return out;
   }
+  /// Of two diagonals that are equally good the old one stays.
+  void keep_diagonals(const Patch& patch, const Cut& out, ByVertices& triangles) const {
+    std::map<std::pair<int, int>, int> facing;  // vertex on the left of an edge, all by their new numbers
+    for (int t : patch.triangles) {
+      const Index3 v = renamed(mesh_.triangles[t], out);
+      for (int k = 0; k < 3; ++k) facing[{v[k], v[(k + 1) % 3]}] = v[(k + 2) % 3];
+    }
+    const auto angle = [&](int a, int b, int c) { return smallest_angle(out.mesh.rest[a], out.mesh.rest[b], out.mesh.rest[c]); };
+    for (const auto& [edge, c] : facing) {
+      const auto [a, b] = edge;
+      const auto across = facing.find({b, a});
+      if (a > b || across == facing.end()) continue;
+      const int d = across->second;  // the old pair is abc and bad, the new one may be adc and dbc
+      const auto adc = triangles.find(sorted({a, d, c})), dbc = triangles.find(sorted({d, b, c}));
+      if (std::min({a, b, c, d}) < 0 || adc == triangles.end() || dbc == triangles.end()) continue;
+      if (std::min(angle(a, b, c), angle(b, a, d)) < std::min(angle(a, d, c), angle(d, b, c)) - kTie) continue;
+      triangles.erase(adc);
+      triangles.erase(dbc);
+      triangles[sorted({a, b, c})] = {a, b, c};
+      triangles[sorted({b, a, d})] = {b, a, d};
+    }
+  }
+  static Index3 renamed(const Index3& t, const Cut& out) { return {out.new_vertex[t[0]], out.new_vertex[t[1]], out.new_vertex[t[2]]}; }
   static std::array<int, 3> sorted(const Index3& t) {
     std::array<int, 3> key{t[0], t[1], t[2]};
     std::sort(key.begin(), key.end());

@@ -23,11 +23,7 @@ class Refiner {
     triangulate();
     Triangulation best = now_;
     const std::size_t most = 2 * now_.points.size() + 50;
-    for (int worst = worst_mendable(); worst >= 0 && now_.points.size() < most; worst = worst_mendable()) {
-      if (!mend(now_.triangles[worst])) {
-        hopeless_.insert(key(now_.triangles[worst]));
-        continue;
-      }
+    while (now_.points.size() < most && mend_bad_ones()) {
       triangulate();
       if (now_.smallest_angle >= best.smallest_angle) best = now_;
     }
@@ -48,18 +44,31 @@ class Refiner {
     for (const Index3& t : now_.triangles) now_.smallest_angle = std::min(now_.smallest_angle, angle(t));
   }
   Real angle(const Index3& t) const { return smallest_angle(point(t[0]), point(t[1]), point(t[2])); }
-  int worst_mendable() const {
-    int worst = -1;
-    Real smallest = angle_;
+  /// One round over the bad triangles, the worst first; one that a point of this round will break up is left to the next.
+  bool mend_bad_ones() {
+    std::vector<std::pair<Real, int>> bad;
     for (int t = 0; t < static_cast<int>(now_.triangles.size()); ++t)
-      if (const Real a = angle(now_.triangles[t]); a < smallest && !hopeless_.contains(key(now_.triangles[t]))) smallest = a, worst = t;
-    return worst;
+      if (const Real a = angle(now_.triangles[t]); a < angle_ && !hopeless_.contains(key(now_.triangles[t]))) bad.push_back({a, t});
+    std::sort(bad.begin(), bad.end());
+    const std::size_t before = now_.points.size();
+    for (const auto& [a, t] : bad)
+      if (!is_broken_up(now_.triangles[t], before) && !mend(now_.triangles[t])) hopeless_.insert(key(now_.triangles[t]));
+    return now_.points.size() > before;
+  }
+  Vec2 circumcentre(const Index3& t) const {
+    const Vec2 &a = point(t[0]), ab = point(t[1]) - a, ac = point(t[2]) - a;
+    return a - left_of(ac * ab.squaredNorm() - ab * ac.squaredNorm()) / (2 * cross(ab, ac));
+  }
+  bool is_broken_up(const Index3& t, std::size_t first_new) const {
+    const Vec2 centre = circumcentre(t);
+    const Real radius2 = (point(t[0]) - centre).squaredNorm();
+    return std::any_of(now_.points.begin() + static_cast<std::ptrdiff_t>(first_new), now_.points.end(),
+                       [&](const Vec2& p) { return (p - centre).squaredNorm() < radius2; });
   }
 
   bool mend(const Index3& t) {
-    const Vec2 &a = point(t[0]), ab = point(t[1]) - a, ac = point(t[2]) - a;
-    const Vec2 centre = a - left_of(ac * ab.squaredNorm() - ab * ac.squaredNorm()) / (2 * cross(ab, ac));
-    const int side = side_in_the_way(a + (ab + ac) / 3, centre);
+    const Vec2 centre = circumcentre(t);
+    const int side = side_in_the_way((point(t[0]) + point(t[1]) + point(t[2])) / 3, centre);
     if (side < 0) return insert(centre);
     if (seam_[side]) return false;
     const auto [from, to] = std::pair(sides_[side][0], sides_[side][1]);
