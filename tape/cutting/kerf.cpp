@@ -24,17 +24,6 @@ constexpr Real kWindows[] = {1, 2, 4};     // cells or kerf widths; over which a
 constexpr Real kTie = 1e-9;  // [rad]
 constexpr const char* kCutsNothing = "the line cuts nothing";
 
-struct Corners {
-  const Vec2 &a, &b, &c;
-};
-Corners corners(const StripMesh& mesh, int t) {
-  const Index3& v = mesh.triangles[t];
-  return {mesh.rest[v[0]], mesh.rest[v[1]], mesh.rest[v[2]]};
-}
-Real longest_edge(const Corners& t) { return std::max({(t.b - t.a).norm(), (t.c - t.b).norm(), (t.a - t.c).norm()}); }
-Real shortest_edge(const Corners& t) { return std::min({(t.b - t.a).norm(), (t.c - t.b).norm(), (t.a - t.c).norm()}); }
-std::string text(const Vec2& p) { return "[" + to_text(p.x()) + ", " + to_text(p.y()) + "] m"; }
-
 /// Connected part of each vertex, numbered by its first vertex; -1 where no triangle is.
 std::vector<int> pieces_of(const StripMesh& mesh) {
   std::vector<int> root(mesh.rest.size(), -1);
@@ -63,7 +52,7 @@ std::vector<int> triangles_near(const StripMesh& mesh, const std::vector<int>& t
   std::vector<int> near;
   for (int t : triangles) {
     const Corners at = corners(mesh, t);
-    const Real limit = reach + kRoom * longest_edge(at);
+    const Real limit = reach + kRoom * at.longest_edge();
     const auto is_near = [&](const Vec2& p) {
       return (p.array() >= low.array() - limit).all() && (p.array() <= high.array() + limit).all() && distance_to_line(p, line) < limit;
     };
@@ -72,25 +61,12 @@ std::vector<int> triangles_near(const StripMesh& mesh, const std::vector<int>& t
   return near;
 }
 
-/// The triangle that p lies in, or of those the one that it is least far outside of.
-struct Place {
-  int triangle = -1;
-  Vec3 weight = Vec3::Constant(-1e30);
-};
-Place locate(const StripMesh& mesh, const std::vector<int>& triangles, const Vec2& p) {
-  Place best;
-  for (int t : triangles) {
-    const Corners at = corners(mesh, t);
-    const Vec3 weight = barycentric(p, at.a, at.b, at.c);
-    if (weight.minCoeff() > best.weight.minCoeff()) best = {t, weight};
-  }
-  return best;
-}
-
-Parent parent_of(const StripMesh& mesh, const std::vector<int>& triangles, const Vec2& p) {
-  const Place place = locate(mesh, triangles, p);
-  const Vec3 weight = place.weight.cwiseMax(0);  // a point on an edge of the strip may be outside by rounding
-  return {place.triangle, weight / weight.sum()};
+/// Of a point that may be outside by rounding.
+Place place_within(const StripMesh& mesh, const std::vector<int>& triangles, const Vec2& p) {
+  Place place = locate(mesh, triangles, p);
+  place.weight = place.weight.cwiseMax(0);
+  place.weight /= place.weight.sum();
+  return place;
 }
 
 /// What is wrong with the triangles from `first` on, or with how any of them meet; empty: nothing.
@@ -99,30 +75,27 @@ std::string flaw(const StripMesh& mesh, int first, Real shortest, Real angle) {
   for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
     const Index3& v = mesh.triangles[t];
     for (int k = 0; k < 3; ++k)
-      if (!edges.insert({{v[k], v[(k + 1) % 3]}, t}).second) return "triangles would overlap at " + text(mesh.rest[v[k]]);
+      if (!edges.insert({{v[k], v[(k + 1) % 3]}, t}).second) return "triangles would overlap at " + to_text(mesh.rest[v[k]]);
     if (t < first) continue;
     const Corners at = corners(mesh, t);
-    if (!(turn(at.a, at.b, at.c) > 0)) return "a triangle without area would be left at " + text(at.a);
-    if (const Real smallest = smallest_angle(at.a, at.b, at.c); smallest < angle)
-      return "a triangle with an angle of " + to_text(std::round(smallest / kRadian * 10) / 10) + " deg would be left at " + text(at.a) +
+    if (!(at.area() > 0)) return "a triangle without area would be left at " + to_text(at.a);
+    if (const Real smallest = at.angle(); smallest < angle)
+      return "a triangle with an angle of " + to_text(std::round(smallest / kRadian * 10) / 10) + " deg would be left at " + to_text(at.a) +
              " (allowed: " + to_text(angle / kRadian) + "): the kerf leaves too little, or meets an edge too sharply";
-    if (Real edge = shortest_edge(at); edge < shortest)
-      return "an edge of " + to_text(edge) + " m would be left at " + text(at.a) + " (allowed: " + to_text(shortest) + ")";
+    if (Real edge = at.shortest_edge(); edge < shortest)
+      return "an edge of " + to_text(edge) + " m would be left at " + to_text(at.a) + " (allowed: " + to_text(shortest) + ")";
   }
   std::vector<char> on_rim(mesh.rest.size(), 0);
   for (const auto& [edge, t] : edges)
     if (!edges.contains({edge.second, edge.first}) && std::exchange(on_rim[edge.first], 1))
-      return "two parts would hang together by one point at " + text(mesh.rest[edge.first]);
+      return "two parts would hang together by one point at " + to_text(mesh.rest[edge.first]);
   return "";
 }
 
 Real area(const StripMesh& mesh) {
-  Real twice = 0;
-  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
-    const Corners at = corners(mesh, t);
-    twice += turn(at.a, at.b, at.c);
-  }
-  return twice / 2;
+  Real sum = 0;
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) sum += corners(mesh, t).area();
+  return sum;
 }
 
 Cut refused(const std::string& reason) {
@@ -152,10 +125,7 @@ class Cutter {
     if (outline.sides.empty() && patch.triangles.size() == mesh_.triangles.size()) return refused("nothing would be left");
 
     Real was = kGoodAngle;
-    for (int t : patch.triangles) {
-      const Corners at = corners(mesh_, t);
-      was = std::min(was, smallest_angle(at.a, at.b, at.c));
-    }
+    for (int t : patch.triangles) was = std::min(was, corners(mesh_, t).angle());
     const std::vector<int> inner = inner_vertices(patch, outline);
     std::vector<Vec2> inner_points;
     for (int v : inner) inner_points.push_back(mesh_.rest[v]);
@@ -167,8 +137,7 @@ class Cutter {
 
     Cut out = assemble(patch, fresh);
     out.kerf_area = outline.removed;
-    const int kept = static_cast<int>(std::count_if(out.new_triangle.begin(), out.new_triangle.end(), [](int t) { return t >= 0; }));
-    out.refusal = flaw(out.mesh, kept, shortest_, std::min(params_.min_angle * kRadian, was / 2));
+    out.refusal = flaw(out.mesh, out.unchanged, shortest_, std::min(params_.min_angle * kRadian, was / 2));
     if (out && std::fabs(area(out.mesh) + out.kerf_area - area(mesh_)) > 1e-12 * area(mesh_)) out.refusal = "the areas would not add up";
     if (!out) return refused(out.refusal);
     out.smallest_angle = fresh.is.smallest_angle / kRadian;
@@ -181,7 +150,7 @@ class Cutter {
     Triangulation is;
     std::vector<int> vertex;  // of the old mesh, -1: new
   };
-  bool inside(const Vec2& p) const { return locate(mesh_, near_, p).weight.minCoeff() >= -1e-9; }
+  bool inside(const Vec2& p) const { return locate(mesh_, near_, p).inside(); }
 
   /// An end of the line, moved on if it stops short of an edge of the strip or its flat end would.
   Vec2 through_edge(const Vec2& end, const Vec2& before) const {
@@ -251,9 +220,10 @@ class Cutter {
       out.mesh.triangles.push_back(v);
       out.source.push_back(t);
     }
+    out.unchanged = static_cast<int>(out.mesh.triangles.size());
     for (const auto& [key, v] : triangles) {
       out.mesh.triangles.push_back(v);
-      out.source.push_back(locate(mesh_, patch.triangles, (out.mesh.rest[v[0]] + out.mesh.rest[v[1]] + out.mesh.rest[v[2]]) / 3).triangle);
+      out.source.push_back(locate(mesh_, patch.triangles, corners(out.mesh, static_cast<int>(out.source.size())).centre()).triangle);
     }
     number(out, parents(out, patch));
     return out;
@@ -286,16 +256,16 @@ class Cutter {
     std::sort(key.begin(), key.end());
     return key;
   }
-  std::vector<Parent> parents(const Cut& cut, const Patch& patch) const {
-    std::vector<Parent> parent(cut.mesh.rest.size(), Parent{-1, Vec3::Zero()});
+  std::vector<Place> parents(const Cut& cut, const Patch& patch) const {
+    std::vector<Place> parent(cut.mesh.rest.size(), Place{});
     for (int t = 0; t < static_cast<int>(mesh_.triangles.size()); ++t)
       for (int k = 0; k < 3; ++k)
         if (const int v = cut.new_vertex[mesh_.triangles[t][k]]; v >= 0 && parent[v].triangle < 0) parent[v] = {t, Vec3::Unit(k)};
     for (std::size_t v = 0; v < parent.size(); ++v)
-      if (parent[v].triangle < 0) parent[v] = parent_of(mesh_, patch.triangles, cut.mesh.rest[v]);
+      if (parent[v].triangle < 0) parent[v] = place_within(mesh_, patch.triangles, cut.mesh.rest[v]);
     return parent;
   }
-  static void number(Cut& out, const std::vector<Parent>& parent) {
+  static void number(Cut& out, const std::vector<Place>& parent) {
     const std::vector<int> rank = number_by_x(out.mesh);
     out.parent.resize(parent.size());
     for (std::size_t v = 0; v < parent.size(); ++v) out.parent[rank[v]] = parent[v];

@@ -2,8 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "tape/core/settings.hpp"
-#include "tape/model/strip_mesh.hpp"
+#include "tape/cutting/place.hpp"
 
 namespace tape {
 /// What a cut must leave. A *cell* is sqrt(2 area / triangles) of the mesh, the side of a square cell of two triangles.
@@ -21,25 +20,20 @@ struct KerfParams {
   }
 };
 
-/// Where a point of the new mesh lies in the old one.
-struct Parent {
-  int triangle;  ///< of the old mesh
-  Vec3 weight;   ///< of its vertices; exactly 1 and 0 where a vertex survived
-};
-
 /// Outcome of a cut. If it was refused, there is a reason and nothing else.
 struct Cut {
   std::string refusal;
   StripMesh mesh;                 ///< without the kerf, vertices numbered by x
-  std::vector<Parent> parent;     ///< [vertices]
+  int unchanged = 0;              ///< triangles below this were there before, in the same order
+  std::vector<Place> parent;      ///< [vertices] where they are in the old mesh; weights exactly 1 and 0 where a vertex survived
   std::vector<int> source;        ///< [triangles] the old triangle that it is, or that its centroid lies in
   std::vector<int> new_vertex;    ///< [old vertices] -1: gone
-  std::vector<int> new_triangle;  ///< [old triangles] the same triangle; -1: there is none
-  std::vector<int> piece;         ///< [vertices] connected part of the strip
-  int pieces = 0;                 ///< numbered by their first vertex
-  Real kerf_area = 0;             ///< [m^2] removed: old area less new area
-  Real smallest_angle = 0;        ///< [deg] of the new triangles
-  Real deviation = 0;             ///< [m] largest distance of the blade's line from the line that was followed
+  std::vector<int> new_triangle;  ///< [old triangles] the same triangle, the same corners in the same order; -1: there is none
+  std::vector<int> piece;         ///< [vertices] connected part of the strip, numbered by its first vertex
+  int pieces = 0;
+  Real kerf_area = 0;       ///< [m^2] old area less new area
+  Real smallest_angle = 0;  ///< [deg] of the patch that was triangulated anew
+  Real deviation = 0;       ///< [m] largest distance of a corner of the line from the line that was followed
   explicit operator bool() const { return refusal.empty(); }
 };
 

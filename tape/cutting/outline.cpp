@@ -7,8 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "tape/core/settings.hpp"
-#include "tape/math/plane.hpp"
+#include "tape/cutting/place.hpp"
 
 namespace tape {
 namespace {
@@ -84,7 +83,6 @@ Real perimeter(const std::vector<Vec2>& p, const std::vector<int>& loop) {
   for (std::size_t i = 0; i < loop.size(); ++i) sum += (p[loop[i]] - p[loop[(i + 1) % loop.size()]]).norm();
   return sum;
 }
-std::string text(const Vec2& p) { return "[" + to_text(p.x()) + ", " + to_text(p.y()) + "] m"; }
 
 class OutlineMaker {
  public:
@@ -179,12 +177,9 @@ class OutlineMaker {
     return loop.size() < 3 || (area >= 0 && area < limits_.hair * perimeter(points_, loop) / 2);
   }
   Real area_of_patch() const {
-    Real twice = 0;
-    for (int t : patch_.triangles) {
-      const Index3& v = mesh_.triangles[t];
-      twice += turn(mesh_.rest[v[0]], mesh_.rest[v[1]], mesh_.rest[v[2]]);
-    }
-    return twice / 2;
+    Real sum = 0;
+    for (int t : patch_.triangles) sum += corners(mesh_, t).area();
+    return sum;
   }
 
   /// The border to the rest of the mesh must have come through.
@@ -205,7 +200,7 @@ class OutlineMaker {
             const bool incident = a == p || b == p;
             const Real distance = incident ? (point(b) - point(a)).norm() : distance_to_segment(point(p), point(a), point(b));
             if (distance < limits_.shortest)
-              return refuse("a part narrower than " + to_text(limits_.shortest) + " m would be left at " + text(point(p)));
+              return refuse("a part narrower than " + to_text(limits_.shortest) + " m would be left at " + to_text(point(p)));
           }
       }
   }
