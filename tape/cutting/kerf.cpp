@@ -69,28 +69,69 @@ Place place_within(const StripMesh& mesh, const std::vector<int>& triangles, con
   return place;
 }
 
+std::string degree_text(Real angle) { return to_text(std::round(angle / kRadian * 10) / 10); }
+
+struct Quality {
+  Real edge, angle, clearance;  // [m], [rad], [m]
+};
+
 /// What is wrong with the triangles from `first` on, or with how any of them meet; empty: nothing.
-std::string flaw(const StripMesh& mesh, int first, Real shortest, Real angle) {
-  std::map<std::pair<int, int>, int> edges;
-  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
-    const Index3& v = mesh.triangles[t];
-    for (int k = 0; k < 3; ++k)
-      if (!edges.insert({{v[k], v[(k + 1) % 3]}, t}).second) return "triangles would overlap at " + to_text(mesh.rest[v[k]]);
-    if (t < first) continue;
-    const Corners at = corners(mesh, t);
-    if (!(at.area() > 0)) return "a triangle without area would be left at " + to_text(at.a);
-    if (const Real smallest = at.angle(); smallest < angle)
-      return "a triangle with an angle of " + to_text(std::round(smallest / kRadian * 10) / 10) + " deg would be left at " + to_text(at.a) +
-             " (allowed: " + to_text(angle / kRadian) + "): the kerf leaves too little, or meets an edge too sharply";
-    if (Real edge = at.shortest_edge(); edge < shortest)
-      return "an edge of " + to_text(edge) + " m would be left at " + to_text(at.a) + " (allowed: " + to_text(shortest) + ")";
+class Inspection {
+ public:
+  Inspection(const StripMesh& mesh, int first, const Quality& least) : mesh_(mesh), first_(first), least_(least) {}
+  std::string flaw() {
+    for (int t = 0; t < static_cast<int>(mesh_.triangles.size()); ++t)
+      for (int k = 0; k < 3; ++k)
+        if (const int v = mesh_.triangles[t][k]; !left_.insert({{v, mesh_.triangles[t][(k + 1) % 3]}, t}).second)
+          return "triangles would overlap at " + point_text(mesh_.rest[v]);
+    for (int t = first_; t < static_cast<int>(mesh_.triangles.size()); ++t)
+      if (const std::string reason = flaw_of(corners(mesh_, t)); !reason.empty()) return reason;
+    return flaw_of_rim();
   }
-  std::vector<char> on_rim(mesh.rest.size(), 0);
-  for (const auto& [edge, t] : edges)
-    if (!edges.contains({edge.second, edge.first}) && std::exchange(on_rim[edge.first], 1))
-      return "two parts would hang together by one point at " + to_text(mesh.rest[edge.first]);
-  return "";
-}
+
+ private:
+  std::string flaw_of(const Corners& at) const {
+    if (!(at.area() > 0)) return "a triangle without area would be left at " + point_text(at.a);
+    if (at.angle() < least_.angle)
+      return "a triangle with an angle of " + degree_text(at.angle()) + " deg would be left at " + point_text(at.a) +
+             " (least: " + degree_text(least_.angle) + "): the kerf leaves too little, or meets an edge too sharply";
+    if (at.shortest_edge() < least_.edge)
+      return "an edge of " + length_text(at.shortest_edge()) + " would be left at " + point_text(at.a) +
+             " (least: " + length_text(least_.edge) + ")";
+    if (const Real height = 2 * at.area() / at.longest_edge(); height < least_.clearance) return too_near(height, at.a);
+    return "";
+  }
+  std::string flaw_of_rim() const {
+    struct Side {
+      int from, to;
+      bool fresh;
+    };
+    std::vector<Side> rim;
+    std::vector<char> starts(mesh_.rest.size(), 0);
+    for (const auto& [edge, t] : left_) {
+      if (left_.contains({edge.second, edge.first})) continue;
+      if (std::exchange(starts[edge.first], 1))
+        return "two parts would hang together by one point at " + point_text(mesh_.rest[edge.first]);
+      rim.push_back({edge.first, edge.second, t >= first_});
+    }
+    for (const Side& p : rim)
+      for (const Side& s : rim) {
+        if (!(p.fresh || s.fresh) || p.from == s.from || p.from == s.to) continue;
+        const Real gap = distance_to_segment(mesh_.rest[p.from], mesh_.rest[s.from], mesh_.rest[s.to]);
+        if (gap < least_.clearance) return too_near(gap, mesh_.rest[p.from]);
+      }
+    return "";
+  }
+  std::string too_near(Real gap, const Vec2& where) const {
+    return "parts that do not touch would be left " + length_text(gap) + " apart at " + point_text(where) +
+           " (least: " + length_text(least_.clearance) + ")";
+  }
+
+  const StripMesh& mesh_;
+  int first_;
+  Quality least_;
+  std::map<std::pair<int, int>, int> left_;  // triangle on the left of an edge
+};
 
 Real area(const StripMesh& mesh) {
   Real sum = 0;
@@ -107,13 +148,10 @@ Cut refused(const std::string& reason) {
 /// Cuts one mesh along one line or another.
 class Cutter {
  public:
-  Cutter(const StripMesh& mesh, const std::vector<int>& near, Real width, const KerfParams& params)
-      : mesh_(mesh),
-        near_(near),
-        cell_(cell_size(mesh)),
-        width_(width),
-        shortest_(std::min(params.min_width * cell_, 0.9 * width)),
-        params_(params) {}
+  Cutter(const StripMesh& mesh, const std::vector<int>& near, const Kerf& kerf, const KerfParams& params)
+      : mesh_(mesh), near_(near), cell_(cell_size(mesh)), width_(kerf.width), clearance_(kerf.clearance), params_(params) {
+    shortest_ = std::min(std::max(params.min_width * cell_, clearance_), 0.9 * width_);
+  }
 
   Cut cut(Line line) const {
     line.front() = through_edge(line[0], line[1]);
@@ -137,9 +175,10 @@ class Cutter {
 
     Cut out = assemble(patch, fresh);
     out.kerf_area = outline.removed;
-    out.refusal = flaw(out.mesh, out.unchanged, shortest_, std::min(params_.min_angle * kRadian, was / 2));
+    out.refusal = Inspection(out.mesh, out.unchanged, {shortest_, smallest_allowed(was), clearance_}).flaw();
     if (out && std::fabs(area(out.mesh) + out.kerf_area - area(mesh_)) > 1e-12 * area(mesh_)) out.refusal = "the areas would not add up";
     if (!out) return refused(out.refusal);
+    out.line = line;
     out.smallest_angle = fresh.is.smallest_angle / kRadian;
     return out;
   }
@@ -150,6 +189,11 @@ class Cutter {
     Triangulation is;
     std::vector<int> vertex;  // of the old mesh, -1: new
   };
+  /// A mesh that was good stays good; one that was not, near that.
+  Real smallest_allowed(Real was) const {
+    const Real wanted = params_.min_angle * kRadian;
+    return was >= wanted ? wanted : 0.75 * was;
+  }
   bool inside(const Vec2& p) const { return locate(mesh_, near_, p).inside(); }
 
   /// An end of the line, moved on if it stops short of an edge of the strip or its flat end would.
@@ -277,7 +321,7 @@ class Cutter {
 
   const StripMesh& mesh_;
   const std::vector<int>& near_;
-  Real cell_, width_, shortest_;  // [m]
+  Real cell_, width_, clearance_, shortest_;  // [m]
   const KerfParams& params_;
 };
 
@@ -291,9 +335,11 @@ std::vector<Line> lines_to_try(const Line& line, Real tolerance, Real window) {
 
 Real cell_size(const StripMesh& mesh) { return std::sqrt(2 * area(mesh) / static_cast<Real>(mesh.triangles.size())); }
 
-Cut cut_kerf(const StripMesh& mesh, const Line& blade, Real width, const KerfParams& params, int within) {
+Cut cut_kerf(const StripMesh& mesh, const Line& blade, const Kerf& kerf, const KerfParams& params, int within) {
   require_valid(params, "cut");
-  if (!(std::isfinite(width) && width > 0)) throw InputError("cut.width = " + to_text(width) + ": allowed is > 0 m");
+  require_valid(kerf, "cut");
+  if (kerf.width <= kerf.clearance)
+    throw SettingsError("cut.width", to_text(kerf.width), "more than the clearance of " + to_text(kerf.clearance) + " m");
   Line line;
   for (const Vec2& p : blade) {
     if (!p.allFinite()) throw InputError("cut: point " + std::to_string(line.size()) + " of the line is not finite");
@@ -305,11 +351,11 @@ Cut cut_kerf(const StripMesh& mesh, const Line& blade, Real width, const KerfPar
   std::vector<int> candidates;
   for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t)
     if (within < 0 || piece[mesh.triangles[t][0]] == piece[mesh.triangles[within][0]]) candidates.push_back(t);
-  const Real cell = cell_size(mesh), window = std::max(cell, width);
+  const Real cell = cell_size(mesh), window = std::max(cell, kerf.width);
   const std::vector<int> near = triangles_near(mesh, candidates, line, 4 * window);
   if (near.empty()) return refused(kCutsNothing);
 
-  const Cutter cutter(mesh, near, width, params);
+  const Cutter cutter(mesh, near, kerf, params);
   std::optional<Cut> first;
   for (const Line& followed : lines_to_try(line, params.tolerance * cell, window)) {
     Cut cut = cutter.cut(followed);

@@ -2,9 +2,21 @@
 #include <string>
 #include <vector>
 
+#include "tape/cutting/blade_line.hpp"
 #include "tape/cutting/place.hpp"
 
 namespace tape {
+/// What is removed.
+struct Kerf {
+  Real width = 1.5e-3;
+  Real clearance = 0.2e-3;
+  template <class F>
+  void fields(F&& f) {
+    f("width", width, "m", Range::above(0, 0.02), "width of the kerf");
+    f("clearance", clearance, "m", Range::closed(0, 0.02), "least distance of parts that do not touch: more than their thickness");
+  }
+};
+
 /// What a cut must leave. A *cell* is sqrt(2 area / triangles) of the mesh, the side of a square cell of two triangles.
 struct KerfParams {
   Real min_angle = 15;
@@ -31,6 +43,7 @@ struct Cut {
   std::vector<int> new_triangle;  ///< [old triangles] the same triangle, the same corners in the same order; -1: there is none
   std::vector<int> piece;         ///< [vertices] connected part of the strip, numbered by its first vertex
   int pieces = 0;
+  Line line;                ///< [m] that was followed, with its ends moved on through edges
   Real kerf_area = 0;       ///< [m^2] old area less new area
   Real smallest_angle = 0;  ///< [deg] of the patch that was triangulated anew
   Real deviation = 0;       ///< [m] largest distance of a corner of the line from the line that was followed
@@ -43,9 +56,8 @@ Real cell_size(const StripMesh& mesh);
 /// Cuts a strip along a line of any shape: removes all that is within width/2 of it (flat at its ends, corners mitred) and triangulates
 /// the patch around the kerf anew. The mesh may have been cut before. Triangles away from the kerf stay as they are, to the bit.
 /// The rules and what is refused: README.md.
-/// @param line    [k] m, in the rest plane; it may end within the strip or go past its edges
-/// @param width   [m] of the kerf
+/// @param line    in the rest plane; it may end within the strip or go past its edges
 /// @param within  triangle of the piece to cut, -1: all pieces that the line meets
-/// @throws InputError if the line or the width is not finite, or a setting is out of its range
-Cut cut_kerf(const StripMesh& mesh, const std::vector<Vec2>& line, Real width, const KerfParams& params, int within = -1);
+/// @throws InputError if the line is not finite or a setting is out of its range
+Cut cut_kerf(const StripMesh& mesh, const Line& line, const Kerf& kerf, const KerfParams& params, int within = -1);
 }  // namespace tape

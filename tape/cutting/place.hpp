@@ -38,5 +38,7 @@ inline Place locate(const StripMesh& mesh, const std::vector<int>& triangles, co
   return best;
 }
 
-inline std::string to_text(const Vec2& p) { return "[" + to_text(p.x()) + ", " + to_text(p.y()) + "] m"; }
+/// For messages: a length in whole micrometres, and a point.
+inline std::string length_text(Real metres) { return to_text(std::round(metres * 1e6) / 1e3) + " mm"; }
+inline std::string point_text(const Vec2& p) { return "[" + length_text(p.x()) + ", " + length_text(p.y()) + "]"; }
 }  // namespace tape

@@ -88,13 +88,16 @@ class Flipper {
     return missing;
   }
   /// Flips until a-b is an edge, which then stays.
-  /// @returns whether it could be done: it was no edge, no other point is on it, and it crosses no edge that stays
+  /// @returns whether it could be done: no other point is on it, and it crosses no edge that stays
   bool recover(int a, int b) {
     std::deque<std::pair<int, int>> crossing;
-    bool there = false;
+    bool there = false;  // another side's flips may have made it
     for (const Index3& t : triangles_)
-      for (int k = 0; k < 3; ++k)
-        if (const int u = t[k], v = t[(k + 1) % 3]; u < v && cross_each_other(a, b, u, v)) crossing.push_back({u, v});
+      for (int k = 0; k < 3; ++k) {
+        const int u = t[k], v = t[(k + 1) % 3];
+        there = there || std::minmax(u, v) == std::minmax(a, b);
+        if (u < v && cross_each_other(a, b, u, v)) crossing.push_back({u, v});
+      }
     for (std::size_t patience = 50 * (crossing.size() + 1); !crossing.empty(); --patience) {
       const auto [u, v] = crossing.front();
       crossing.pop_front();
