@@ -1,7 +1,9 @@
 #include "tape/cutting/transfer.hpp"
 
 #include <Eigen/Cholesky>
+#include <map>
 #include <numeric>
+#include <utility>
 
 namespace tape {
 namespace {
@@ -25,98 +27,111 @@ bool boxes_overlap(const Corners& s, const Corners& t) {
   return (low(s).array() < high(t).array()).all() && (low(t).array() < high(s).array()).all();
 }
 
+/// Columns: the values at the corners of a triangle.
+Mat3 at_corners(const std::vector<Vec3>& value, const Index3& t) {
+  Mat3 columns;
+  columns << value[t[0]], value[t[1]], value[t[2]];
+  return columns;
+}
+
+/// A piece that was cut. Lumped masses.
 struct Piece {
-  Momentum has, needs;
-  bool changed = false;
+  std::vector<int> vertices;
+  Momentum lost;  ///< by the interpolation: old less new integrals
+  Real mass = 0;
+  Vec3 centre = Vec3::Zero();
+  Mat3 inertia = Mat3::Zero();  ///< about the centre
 };
 
 class Mover {
  public:
   Mover(const StripMesh& old, const Cut& cut, const std::vector<Vec3>& x, const std::vector<Vec3>& v, Real per_area)
-      : old_(old), cut_(cut), x_(x), v_(v), per_area_(per_area), pieces_(static_cast<std::size_t>(cut.pieces)) {}
+      : old_(old), cut_(cut), x_(x), v_(v), per_area_(per_area) {}
 
   MovedOn run() {
-    MovedOn out{interpolated(old_, cut_, x_), interpolated(old_, cut_, v_), lumped_mass(cut_.mesh, per_area_), {}, 0};
-    out.kerf = what_pieces_need();
-    for (std::size_t i = 0; i < out.x.size(); ++i) pieces_[cut_.piece[i]].has.add(out.mass[i], out.x[i], out.v[i]);
-    for (int p = 0; p < cut_.pieces; ++p)
-      if (pieces_[p].changed) correct(out, p);
-    return out;
+    out_.x = interpolated(old_, cut_, x_);
+    out_.v = interpolated(old_, cut_, v_);
+    out_.mass = lumped_mass(cut_.mesh, per_area_);
+    compare();
+    const std::vector<Vec3> plain = out_.v;
+    Mat3 inertia = Mat3::Zero();
+    for (auto& [id, piece] : pieces_) {
+      measure(piece, id);
+      inertia += piece.inertia;
+      const Vec3 angular = piece.lost.angular - piece.centre.cross(piece.lost.linear);
+      move(piece, piece.lost.linear / piece.mass, piece.inertia.ldlt().solve(angular));
+    }
+    const Vec3 before = momentum(lumped_mass(old_, per_area_), x_, v_).angular, after = momentum(out_.mass, out_.x, out_.v).angular;
+    const Vec3 spin = inertia.ldlt().solve(before - out_.kerf.angular - after);
+    for (const auto& [id, piece] : pieces_) move(piece, Vec3::Zero(), spin);
+    for (std::size_t i = 0; i < plain.size(); ++i) out_.largest_change = std::max(out_.largest_change, (out_.v[i] - plain[i]).norm());
+    return std::move(out_);
   }
 
  private:
-  /// Adds material of an old triangle. @param at  barycentric, its centre
-  void add(Momentum& sum, int triangle, Real area, const Vec3& at) const {
-    for (int k = 0; k < 3; ++k) {
-      const int i = old_.triangles[triangle][k];
-      sum.add(per_area_ * area * at[k], x_[i], v_[i]);
-    }
-  }
-
-  /// Hands the old momentum to the pieces; what nobody gets is returned.
-  Momentum what_pieces_need() {
-    Momentum rest;
-    std::vector<int> gone;  // old triangles that are no more
+  /// Old against new integrals over the new triangles; what no piece has went with the kerf.
+  void compare() {
+    std::vector<int> gone;
     for (int t = 0; t < static_cast<int>(old_.triangles.size()); ++t) {
-      const Real area = corners(old_, t).area();
-      if (const int same = cut_.new_triangle[t]; same >= 0) {
-        add(pieces_[piece_of(same)].needs, t, area, Vec3::Constant(1.0 / 3));
-      } else {
-        gone.push_back(t);
-        add(rest, t, area, Vec3::Constant(1.0 / 3));
-      }
+      if (cut_.new_triangle[t] >= 0) continue;
+      gone.push_back(t);
+      const Index3& corner = old_.triangles[t];
+      out_.kerf.add_triangle(per_area_ * corners(old_, t).area(), at_corners(x_, corner), at_corners(v_, corner));
     }
     for (int n = cut_.unchanged; n < static_cast<int>(cut_.mesh.triangles.size()); ++n) {
-      Piece& piece = pieces_[piece_of(n)];
-      piece.changed = true;
-      for (int t : gone) share(n, t, piece.needs, rest);
+      const Index3& corner = cut_.mesh.triangles[n];
+      Momentum& lost = pieces_[cut_.piece[corner[0]]].lost;
+      lost.add_triangle(-per_area_ * corners(cut_.mesh, n).area(), at_corners(out_.x, corner), at_corners(out_.v, corner));
+      for (int t : gone) share(n, t, lost);
     }
-    return rest;
   }
-  int piece_of(int triangle) const { return cut_.piece[cut_.mesh.triangles[triangle][0]]; }
-
-  /// What a new triangle has of an old one goes from `rest` to `sum`.
-  void share(int fresh, int old, Momentum& sum, Momentum& rest) const {
+  /// What a new triangle has of an old one goes from the kerf to its piece.
+  void share(int fresh, int old, Momentum& piece) {
     const Corners n = corners(cut_.mesh, fresh), o = corners(old_, old);
     if (!boxes_overlap(n, o)) return;
     Polygon common{n.a, n.b, n.c};
     for (const auto& [a, b] : {std::pair(o.a, o.b), std::pair(o.b, o.c), std::pair(o.c, o.a)}) common = left_part(common, a, b);
+    const Mat3 x = at_corners(x_, old_.triangles[old]), v = at_corners(v_, old_.triangles[old]);
     for (std::size_t i = 1; i + 1 < common.size(); ++i) {
       const Corners part{common[0], common[i], common[i + 1]};
-      const Vec3 at = o.weight(part.centre());
-      add(sum, old, part.area(), at);
-      add(rest, old, -part.area(), at);
+      Mat3 weight;
+      weight << o.weight(part.a), o.weight(part.b), o.weight(part.c);
+      const Real mass = per_area_ * part.area();
+      piece.add_triangle(mass, x * weight, v * weight);
+      out_.kerf.add_triangle(-mass, x * weight, v * weight);
     }
   }
 
-  void correct(MovedOn& out, int p) const {
-    const Piece& piece = pieces_[p];
-    Vec3 centre = Vec3::Zero();
-    const auto each = [&](const auto& f) {
-      for (std::size_t i = 0; i < out.x.size(); ++i)
-        if (cut_.piece[i] == p) f(i);
-    };
-    each([&](std::size_t i) { centre += out.mass[i] * out.x[i]; });
-    centre /= piece.has.mass;
-    Mat3 second = Mat3::Zero();
-    each([&](std::size_t i) { second += out.mass[i] * (out.x[i] - centre) * (out.x[i] - centre).transpose(); });
-    const Mat3 inertia = second.trace() * Mat3::Identity() - second;
-    const Vec3 linear = piece.needs.linear - piece.has.linear, angular = piece.needs.angular - piece.has.angular - centre.cross(linear);
-    const Vec3 dv = linear / piece.has.mass, spin = inertia.ldlt().solve(angular);
-    each([&](std::size_t i) {
-      const Vec3 change = dv + spin.cross(out.x[i] - centre);
-      out.v[i] += change;
-      out.largest_change = std::max(out.largest_change, change.norm());
-    });
+  void measure(Piece& piece, int id) const {
+    for (int i = 0; i < static_cast<int>(out_.x.size()); ++i)
+      if (cut_.piece[i] == id) piece.vertices.push_back(i);
+    for (int i : piece.vertices) piece.mass += out_.mass[i], piece.centre += out_.mass[i] * out_.x[i];
+    piece.centre /= piece.mass;
+    for (int i : piece.vertices) {
+      const Vec3 r = out_.x[i] - piece.centre;
+      piece.inertia += out_.mass[i] * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+    }
+  }
+  void move(const Piece& piece, const Vec3& velocity, const Vec3& spin) {
+    for (int i : piece.vertices) out_.v[i] += velocity + spin.cross(out_.x[i] - piece.centre);
   }
 
   const StripMesh& old_;
   const Cut& cut_;
   const std::vector<Vec3>&x_, &v_;
-  Real per_area_;  // [kg/m^2]
-  std::vector<Piece> pieces_;
+  Real per_area_;                // [kg/m^2]
+  std::map<int, Piece> pieces_;  // by their numbers
+  MovedOn out_;
 };
 }  // namespace
+
+/// Integrals of products of linear functions over a triangle: [1/12] (sum of all pairs of corners, those of equal ones twice).
+void Momentum::add_triangle(Real m, const Mat3& x, const Mat3& v) {
+  mass += m;
+  linear += m / 3 * v.rowwise().sum();
+  angular += m / 12 * Vec3(x.rowwise().sum()).cross(Vec3(v.rowwise().sum()));
+  for (int k = 0; k < 3; ++k) angular += m / 12 * x.col(k).cross(v.col(k));
+}
 
 std::vector<Real> lumped_mass(const StripMesh& mesh, Real per_area) {
   std::vector<Real> mass(mesh.rest.size(), 0.0);

@@ -25,6 +25,8 @@ struct Momentum {
   Vec3 linear = Vec3::Zero();   ///< [kg m/s]
   Vec3 angular = Vec3::Zero();  ///< [kg m^2/s]
   void add(Real m, const Vec3& x, const Vec3& v) { mass += m, linear += m * v, angular += m * x.cross(v); }
+  /// An even triangle of mass m whose corners are at x and move by v; positions and velocities are linear in between.
+  void add_triangle(Real m, const Mat3& x, const Mat3& v);
 };
 Momentum momentum(const std::vector<Real>& mass, const std::vector<Vec3>& x, const std::vector<Vec3>& v);
 
@@ -32,12 +34,15 @@ Momentum momentum(const std::vector<Real>& mass, const std::vector<Vec3>& x, con
 struct MovedOn {
   std::vector<Vec3> x, v;   ///< [vertices] m, m/s
   std::vector<Real> mass;   ///< [vertices] kg, lumped
-  Momentum kerf;            ///< that the removed material takes along
-  Real largest_change = 0;  ///< [m/s] of a vertex, by the motions that restore the momentum of the pieces
+  Momentum kerf;            ///< of the removed material: integrals of the old linear positions and velocities over it
+  Real largest_change = 0;  ///< [m/s] of a vertex, by the motions that restore momentum
 };
-/// Interpolates positions and velocities, and gives each piece the rigid motion of least kinetic energy with which it has the linear
-/// and angular momentum that its material had before. Material at place w of a triangle has its mass at the corners, in the shares w:
-/// what they sum to over the old mesh is the lumped one. Pieces without new triangles stay as they are, to the bit.
+/// Interpolates positions and velocities, and restores the momentum: that of the lumped masses was, and with `kerf` is again, the same.
+/// 1. Each piece gets the rigid motion of least kinetic energy that makes up for what interpolation did: the integrals of v and x cross v
+///    over its new triangles are those of the old ones there.
+/// 2. Lumping anew moves mass between the corners. The angular momentum that this gives or takes is restored by one spin, the same for all
+///    pieces that were cut, each about its own centre.
+/// Pieces without new triangles stay as they are, to the bit.
 /// @param x, v      [old vertices] m, m/s
 /// @param per_area  [kg/m^2]
 MovedOn move_on(const StripMesh& old, const Cut& cut, const std::vector<Vec3>& x, const std::vector<Vec3>& v, Real per_area);

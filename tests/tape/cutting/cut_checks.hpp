@@ -58,20 +58,13 @@ inline Real distance(const Vec2& p, const Vec2& a, const Vec2& b) {
   const Real at = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
   return (p - a - at * along).norm();
 }
-/// The line less `by` [m] of arc length at both ends; fewer than two points if nothing is left.
+/// The line less `by` [m] of its first and last segment: what a flat end is sure to clear. No points if these are shorter.
 inline Line shortened(Line line, Real by) {
-  for (int end = 0; end < 2; ++end) {
-    Real left = by;
-    while (line.size() > 1 && left > 0) {
-      const Vec2 to = line[line.size() - 2] - line.back();
-      if (to.norm() > left) {
-        line.back() += left * to.normalized();
-        left = 0;
-      } else {
-        left -= to.norm();
-        line.pop_back();
-      }
-    }
+  const Real needed = line.size() == 2 ? 2 * by : by;
+  for (int end = 0; end < 2 && !line.empty(); ++end) {
+    const Vec2 along = line[1] - line[0];
+    if (along.norm() <= needed - end * (needed - by)) return {};
+    line[0] += by * along.normalized();
     std::reverse(line.begin(), line.end());
   }
   return line;
@@ -123,14 +116,14 @@ inline void expect_a_strip_mesh(const Cut& cut) {
 }
 
 /// @param angle  [deg] that new triangles must keep
-inline void expect_quality(const StripMesh& old, const Cut& cut, Real angle) {
+inline void expect_quality(const StripMesh& old, const Cut& cut, Real width, Real angle) {
   const Real cell = std::sqrt(2 * area(old) / static_cast<Real>(old.triangles.size()));
   for (std::size_t t = static_cast<std::size_t>(cut.unchanged); t < cut.mesh.triangles.size(); ++t)
     for (int k = 0; k < 3; ++k) {
       const Index3& v = cut.mesh.triangles[t];
       const Vec2 a = cut.mesh.rest[v[(k + 1) % 3]] - cut.mesh.rest[v[k]], b = cut.mesh.rest[v[(k + 2) % 3]] - cut.mesh.rest[v[k]];
       EXPECT_GE(std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)) * 180 / std::numbers::pi, angle);
-      EXPECT_GE(a.norm(), 0.05 * cell);
+      EXPECT_GE(a.norm(), std::min(0.05 * cell, 0.9 * width));
     }
 }
 
@@ -192,7 +185,7 @@ inline void expect_sound(const StripMesh& old, const Cut& cut, const Line& line,
   EXPECT_NEAR(area(cut.mesh) + cut.kerf_area, area(old), 1e-12 * area(old));
   EXPECT_GT(cut.kerf_area, 0);
   expect_a_strip_mesh(cut);
-  expect_quality(old, cut, angle);
+  expect_quality(old, cut, width, angle);
   Real longest = 0;
   for (const Index3& t : old.triangles)
     for (int k = 0; k < 3; ++k) longest = std::max(longest, (old.rest[t[k]] - old.rest[t[(k + 1) % 3]]).norm());

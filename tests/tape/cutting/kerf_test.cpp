@@ -221,7 +221,7 @@ TEST(Kerf, OnlyTheGivenPieceIsCut) {
   const Cut c = cut_kerf(halves.mesh, along, {kKerf, kClearance}, {}, left);
   ASSERT_EQ(c.refusal, "");
   test::expect_a_strip_mesh(c);
-  test::expect_quality(halves.mesh, c, 15);
+  test::expect_quality(halves.mesh, c, kKerf, 15);
   test::expect_the_rest_unchanged(halves.mesh, c, {{0.015, 0.001}, {0.03, 0.001}}, 4 * kKerf + 3 * kCell);
   test::expect_true_parents(halves.mesh, c);
   EXPECT_NEAR(c.kerf_area, kKerf * (0.015 - kKerf / 2), 1e-12 * kWidth * kLength);
