@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "tape/cutting/outline.hpp"
@@ -21,6 +22,7 @@ constexpr Real kNothing = 1e-3;            // cells; what is thinner counts as n
 constexpr Real kRoom = 1.2;                // longest edges of a triangle between the kerf and the rest of the mesh
 constexpr Real kWindows[] = {1, 2, 4};     // cells or kerf widths; over which a serration that is too fine is averaged
 
+constexpr Real kAway = 0.5;  // cells or kerf widths, the larger; farther from the blade no line is followed
 constexpr Real kTie = 1e-9;  // [rad]
 constexpr const char* kCutsNothing = "the line cuts nothing";
 
@@ -69,69 +71,41 @@ Place place_within(const StripMesh& mesh, const std::vector<int>& triangles, con
   return place;
 }
 
-std::string degree_text(Real angle) { return to_text(std::round(angle / kRadian * 10) / 10); }
+std::string degree_text(Real angle) { return to_text(std::round(angle / kRadian * 10) / 10) + " deg"; }
 
 struct Quality {
   Real edge, angle, clearance;  // [m], [rad], [m]
 };
 
+/// What is wrong with a triangle; empty: nothing.
+std::string flaw_of(const Corners& at, const Quality& least) {
+  const auto left = [&](const std::string& what, const std::string& allowed) {
+    return what + " would be left at " + point_text(at.a) + " (least: " + allowed + ")";
+  };
+  if (!(at.area() > 0)) return left("a triangle without area", "more");
+  if (at.angle() < least.angle)
+    return left("a triangle with an angle of " + degree_text(at.angle()), degree_text(least.angle)) +
+           ": the kerf leaves too little, or meets an edge too sharply";
+  if (at.shortest_edge() < least.edge) return left("an edge of " + length_text(at.shortest_edge()), length_text(least.edge));
+  if (const Real height = 2 * at.area() / at.longest_edge(); height < least.clearance)
+    return left("a triangle only " + length_text(height) + " high", length_text(least.clearance));
+  return "";
+}
+
 /// What is wrong with the triangles from `first` on, or with how any of them meet; empty: nothing.
-class Inspection {
- public:
-  Inspection(const StripMesh& mesh, int first, const Quality& least) : mesh_(mesh), first_(first), least_(least) {}
-  std::string flaw() {
-    for (int t = 0; t < static_cast<int>(mesh_.triangles.size()); ++t)
-      for (int k = 0; k < 3; ++k)
-        if (const int v = mesh_.triangles[t][k]; !left_.insert({{v, mesh_.triangles[t][(k + 1) % 3]}, t}).second)
-          return "triangles would overlap at " + point_text(mesh_.rest[v]);
-    for (int t = first_; t < static_cast<int>(mesh_.triangles.size()); ++t)
-      if (const std::string reason = flaw_of(corners(mesh_, t)); !reason.empty()) return reason;
-    return flaw_of_rim();
-  }
-
- private:
-  std::string flaw_of(const Corners& at) const {
-    if (!(at.area() > 0)) return "a triangle without area would be left at " + point_text(at.a);
-    if (at.angle() < least_.angle)
-      return "a triangle with an angle of " + degree_text(at.angle()) + " deg would be left at " + point_text(at.a) +
-             " (least: " + degree_text(least_.angle) + "): the kerf leaves too little, or meets an edge too sharply";
-    if (at.shortest_edge() < least_.edge)
-      return "an edge of " + length_text(at.shortest_edge()) + " would be left at " + point_text(at.a) +
-             " (least: " + length_text(least_.edge) + ")";
-    if (const Real height = 2 * at.area() / at.longest_edge(); height < least_.clearance) return too_near(height, at.a);
-    return "";
-  }
-  std::string flaw_of_rim() const {
-    struct Side {
-      int from, to;
-      bool fresh;
-    };
-    std::vector<Side> rim;
-    std::vector<char> starts(mesh_.rest.size(), 0);
-    for (const auto& [edge, t] : left_) {
-      if (left_.contains({edge.second, edge.first})) continue;
-      if (std::exchange(starts[edge.first], 1))
-        return "two parts would hang together by one point at " + point_text(mesh_.rest[edge.first]);
-      rim.push_back({edge.first, edge.second, t >= first_});
-    }
-    for (const Side& p : rim)
-      for (const Side& s : rim) {
-        if (!(p.fresh || s.fresh) || p.from == s.from || p.from == s.to) continue;
-        const Real gap = distance_to_segment(mesh_.rest[p.from], mesh_.rest[s.from], mesh_.rest[s.to]);
-        if (gap < least_.clearance) return too_near(gap, mesh_.rest[p.from]);
-      }
-    return "";
-  }
-  std::string too_near(Real gap, const Vec2& where) const {
-    return "parts that do not touch would be left " + length_text(gap) + " apart at " + point_text(where) +
-           " (least: " + length_text(least_.clearance) + ")";
-  }
-
-  const StripMesh& mesh_;
-  int first_;
-  Quality least_;
-  std::map<std::pair<int, int>, int> left_;  // triangle on the left of an edge
-};
+std::string flaw(const StripMesh& mesh, int first, const Quality& least) {
+  std::set<std::pair<int, int>> edges;
+  for (const Index3& t : mesh.triangles)
+    for (int k = 0; k < 3; ++k)
+      if (!edges.insert({t[k], t[(k + 1) % 3]}).second) return "triangles would overlap at " + point_text(mesh.rest[t[k]]);
+  for (int t = first; t < static_cast<int>(mesh.triangles.size()); ++t)
+    if (const std::string reason = flaw_of(corners(mesh, t), least); !reason.empty()) return reason;
+  std::vector<char> starts(mesh.rest.size(), 0);
+  for (const auto& [a, b] : edges)
+    if (!edges.contains({b, a}) && std::exchange(starts[a], 1))
+      return "two parts would hang together by one point at " + point_text(mesh.rest[a]);
+  return "";
+}
 
 Real area(const StripMesh& mesh) {
   Real sum = 0;
@@ -150,7 +124,7 @@ class Cutter {
  public:
   Cutter(const StripMesh& mesh, const std::vector<int>& near, const Kerf& kerf, const KerfParams& params)
       : mesh_(mesh), near_(near), cell_(cell_size(mesh)), width_(kerf.width), clearance_(kerf.clearance), params_(params) {
-    shortest_ = std::min(std::max(params.min_width * cell_, clearance_), 0.9 * width_);
+    shortest_ = std::max(clearance_, std::min(params.min_width * cell_, 0.9 * width_));
   }
 
   Cut cut(Line line) const {
@@ -175,7 +149,7 @@ class Cutter {
 
     Cut out = assemble(patch, fresh);
     out.kerf_area = outline.removed;
-    out.refusal = Inspection(out.mesh, out.unchanged, {shortest_, smallest_allowed(was), clearance_}).flaw();
+    out.refusal = flaw(out.mesh, out.unchanged, {shortest_, smallest_allowed(was), clearance_});
     if (out && std::fabs(area(out.mesh) + out.kerf_area - area(mesh_)) > 1e-12 * area(mesh_)) out.refusal = "the areas would not add up";
     if (!out) return refused(out.refusal);
     out.line = line;
@@ -358,8 +332,10 @@ Cut cut_kerf(const StripMesh& mesh, const Line& blade, const Kerf& kerf, const K
   const Cutter cutter(mesh, near, kerf, params);
   std::optional<Cut> first;
   for (const Line& followed : lines_to_try(line, params.tolerance * cell, window)) {
+    const Real away = deviation(line, followed);
+    if (away > kAway * window) break;
     Cut cut = cutter.cut(followed);
-    if (cut) cut.deviation = deviation(line, followed);
+    if (cut) cut.deviation = away;
     if (cut) return cut;
     if (!first) first = std::move(cut);
     if (first->refusal == kCutsNothing) break;

@@ -200,7 +200,7 @@ class OutlineMaker {
             const bool incident = a == p || b == p;
             const Real distance = incident ? (point(b) - point(a)).norm() : distance_to_segment(point(p), point(a), point(b));
             if (distance < limits_.shortest)
-              return refuse("a part narrower than " + length_text(limits_.shortest) + " would be left at " + point_text(point(p)));
+              return refuse("a part or a gap narrower than " + length_text(limits_.shortest) + " would be left at " + point_text(point(p)));
           }
       }
   }

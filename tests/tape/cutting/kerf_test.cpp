@@ -105,6 +105,10 @@ TEST(Kerf, TeethThatTheMeshCannotHaveAreCutAlongTheirMean) {
   EXPECT_LE(c.deviation, 1e-3);
   EXPECT_LT(c.kerf_area, kWidth * (0.3e-3 + 0.5e-3));
 }
+TEST(Kerf, ALineIsNotMovedByMoreThanHalfACell) {
+  // Teeth of 9 mm too steep to be cut, whose mean is 4.5 mm away.
+  EXPECT_FALSE(cut(strip(), zigzag(0.03, 1.5e-3, 9e-3), 0.3e-3));
+}
 TEST(Kerf, ABladeAsWideAsTheStripSeparatesIt) {
   for (Real slope : {0.0, 0.6})
     for (Real short_by : {0.0, 1e-12, 1e-9, 1e-4, -1e-9}) {
@@ -190,6 +194,22 @@ TEST(Kerf, ARemainderNarrowerThanTheShortestEdgeGoesWithTheKerf) {
 TEST(Kerf, ANarrowBridgeIsRefused) {
   const Real y = kWidth / 2 - kKerf / 2 - 0.02 * kCell;
   EXPECT_THAT(cut(strip(), {{0.02, y}, {0.04, y}}).refusal, HasSubstr("narrower"));
+}
+TEST(Kerf, AnOpeningNarrowerThanTheClearanceIsRefused) {
+  // Of the flat end of a kerf at 45 degrees one corner ends 0.05 mm beyond the edge: it opens 0.1 mm there.
+  const Real width = 3e-3, y = kWidth / 2 + 0.05e-3 - width / 2 / std::sqrt(2);
+  const Line line{{0.023, y - 0.007}, {0.03, y}};
+  EXPECT_THAT(cut(strip(), line, width).refusal, HasSubstr("a gap narrower than 0.2 mm"));
+  Line higher = line;
+  for (Vec2& p : higher) p.y() += 0.2e-3;
+  EXPECT_EQ(cut(strip(), higher, width).refusal, "");
+}
+TEST(Kerf, TrianglesACellAwayStayWithTheirDiagonals) {
+  // Vertices 0.69 and 0.31 cells from the line are too near to the kerf. The next ones, at 1.69 and 1.31 cells, stay.
+  for (MeshPattern pattern : {MeshPattern::same, MeshPattern::alternating}) {
+    const StripMesh mesh = strip(pattern);
+    test::expect_the_rest_unchanged(mesh, cut(mesh, across(9.69 * kCell)), across(9.69 * kCell), 1.6 * kCell);
+  }
 }
 TEST(Kerf, TheEndOfAStripCanBeTrimmed) {
   const StripMesh mesh = strip();
