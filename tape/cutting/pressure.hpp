@@ -64,7 +64,6 @@ struct CutTrigger {
   bool update(Real peak, const TriggerParams& params) {
     if (waiting > 0) {
       --waiting;
-      above = 0;
       return false;
     }
     above = peak >= params.threshold ? above + 1 : 0;

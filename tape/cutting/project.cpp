@@ -97,17 +97,19 @@ class Projector {
   std::optional<Stretch> over(int t, const Vec2& a, const Vec2& b, Real before) {
     const Vec2 p = on_plane(corner(t, 0)), q = on_plane(corner(t, 1)), r = on_plane(corner(t, 2));
     const Real twice = turn(p, q, r);
-    if (twice == 0) return {};
+    if (twice < params_.facing * normal(t).norm()) {
+      edge_on_ = edge_on_ || meet(a, b, p, q) || meet(a, b, q, r) || meet(a, b, r, p);
+      return {};
+    }
     const Vec3 at_a = barycentric(a, p, q, r), at_b = barycentric(b, p, q, r);
     Real from = 0, to = 1;
-    for (int k = 0; k < 3; ++k) {  // a little more than the triangle, lest an edge be on neither side of itself
-      const Real start = at_a[k] + 1e-9, rate = at_b[k] - at_a[k];
-      if (rate > 0) from = std::max(from, -start / rate);
-      if (rate < 0) to = std::min(to, -start / rate);
-      if (rate == 0 && start < 0) return {};
+    for (int k = 0; k < 3; ++k) {
+      const Real rate = at_b[k] - at_a[k];
+      if (rate > 0) from = std::max(from, -at_a[k] / rate);
+      if (rate < 0) to = std::min(to, -at_a[k] / rate);
+      if (rate == 0 && at_a[k] < 0) return {};
     }
     if (!(from < to)) return {};
-    edge_on_ = edge_on_ || twice < params_.facing * normal(t).norm();
     const Corners rest = corners(mesh_, t);
     const auto image = [&](const Vec3& w) -> Vec2 { return w[0] * rest.a + w[1] * rest.b + w[2] * rest.c; };
     const auto leaves = [&](const Vec3& w) {
@@ -120,20 +122,23 @@ class Projector {
     return Stretch{before + from * length, before + to * length, image(start), image(end), leaves(start), leaves(end)};
   }
 
+  static bool meet(const Vec2& a, const Vec2& b, const Vec2& p, const Vec2& q) {
+    return turn(a, b, p) * turn(a, b, q) <= 0 && turn(p, q, a) * turn(p, q, b) <= 0;
+  }
+
   /// Strings the stretches together. Two triangles may both have a part of the blade only where they say the same of it.
   void join(std::vector<Stretch>& stretches) {
     std::sort(stretches.begin(), stretches.end(),
               [](const Stretch& s, const Stretch& t) { return std::pair(s.from, s.to) < std::pair(t.from, t.to); });
     const Real alike = kAlike * cell_size(mesh_);
-    Real reached = -1;
+    Real reached = 0;
     for (std::size_t i = 0; i < stretches.size(); ++i) {
       const Stretch& s = stretches[i];
       for (std::size_t j = 0; j < i; ++j)
         if (differ(s, stretches[j], alike)) return void(out_.refusal = "the strip lies under the blade more than once");
-      if (s.to <= reached) continue;
-      for (const Vec2& p : {at(s, std::max(s.from, reached)), s.end})
+      for (const Vec2& p : {at(s, std::clamp(reached, s.from, s.to)), s.end})
         if (out_.line.empty() || (p - out_.line.back()).norm() > alike) out_.line.push_back(p);
-      reached = s.to;
+      reached = std::max(reached, s.to);
     }
     if (out_.line.size() < 2) out_.refusal = "the blade is not over the strip";
   }

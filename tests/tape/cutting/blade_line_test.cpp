@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 using namespace tape;
@@ -28,4 +29,8 @@ TEST(BladeLine, AveragedLeavesAStraightLineAndFlattensTeeth) {
     if (p.x() < std::sqrt(2) || p.x() > 18 / std::sqrt(2)) continue;
     EXPECT_NEAR(p.y(), std::sqrt(0.125), 1e-12);
   }
+  Real highest = 0;  // a window of 1 on a tip has half a side on each side of it, a quarter of the height below it in the mean
+  for (const Vec2& p : averaged(teeth, 1))
+    if (p.x() > std::sqrt(2) && p.x() < 18 / std::sqrt(2)) highest = std::max(highest, p.y());
+  EXPECT_NEAR(highest, 0.75 / std::sqrt(2), 1e-12);
 }

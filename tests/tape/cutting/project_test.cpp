@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -71,6 +72,16 @@ TEST(ProjectBlade, ALineThroughVerticesAndAlongEdgesIsWhole) {
       EXPECT_LT((found.line.back() - (start + inside * along).head<2>()).norm(), 1e-3 + 1e-5);
     }
 }
+TEST(ProjectBlade, TwoTrianglesAtAnEdgeUnderTheBladeCountOnce) {
+  // All numbers are exact: the row of edges at y = 0 belongs to the triangles on both sides.
+  const StripMesh mesh = strip();
+  const std::vector<Vec3> x = placed(mesh, [](const Vec2& p) { return Vec3(p.x(), p.y(), 0); });
+  const Projection found = project_blade(mesh, x, {{0.01, 0, 0}, {0.05, 0, 0}}, {triangle_at(mesh, {0.03, 0})}, 1e-3, {});
+  ASSERT_TRUE(found) << found.refusal;
+  EXPECT_NEAR(found.line.front().x(), 0.01, 1e-15);
+  EXPECT_NEAR(found.line.back().x(), 0.05, 1e-15);
+  for (std::size_t i = 0; i + 1 < found.line.size(); ++i) EXPECT_LT(found.line[i].x(), found.line[i + 1].x());
+}
 TEST(ProjectBlade, OnAStretchedStripTheLineIsInRestCoordinates) {
   const StripMesh mesh = strip();
   const std::vector<Vec3> x = placed(mesh, [](const Vec2& p) { return Vec3(1.2 * p.x(), 0.9 * p.y(), 0); });
@@ -116,6 +127,20 @@ TEST(ProjectBlade, AFoldUnderTheBladeIsRefused) {
   EXPECT_THAT(found.refusal, HasSubstr("folded"));
   EXPECT_TRUE(found.line.empty());
 }
+TEST(ProjectBlade, AWallUnderTheBladeIsRefusedAndASlopeIsNot) {
+  // Flat, one cell down, flat again; the blade lies along the strip over the step.
+  const StripMesh mesh = strip();
+  const Real cell = kWidth / 6;
+  const auto projected = [&](Real run) {  // horizontal part of the cell that goes down [cells]
+    const std::vector<Vec3> x = placed(mesh, [&](const Vec2& p) {
+      const Real down = std::clamp(p.x() - 9 * cell, 0.0, cell);
+      return Vec3(p.x() - (1 - run) * down, p.y(), -std::sqrt(1 - run * run) * down);
+    });
+    return project_blade(mesh, x, {{0.02, 1e-3, 1e-4}, {0.04, 0, 1e-4}}, {triangle_at(mesh, {0.025, 0})}, 1e-3, {});
+  };
+  for (Real run : {0.0, 1e-12, 0.05, -0.2}) EXPECT_THAT(projected(run).refusal, HasSubstr("folded")) << run;
+  EXPECT_EQ(projected(0.4).refusal, "");  // the plane tilts with the slope, so the sine is more than that
+}
 TEST(ProjectBlade, AHelixThatLiesUnderTheBladeTwiceIsRefused) {
   // A turn and a half of a flat spiral staircase that is as steep as it can be without standing on edge.
   const StripMesh mesh = make_strip_mesh({.length = 0.3, .cells_across = 6}, kWidth, 1);
@@ -141,11 +166,15 @@ TEST(ProjectBlade, TapeFartherThanTheReachIsNotCut) {
   // The strip bends down along y beyond y = 0, away from a long blade; 5 mm below it ends the cut.
   const StripMesh mesh = make_strip_mesh({.length = kLength, .cells_across = 24}, kWidth, 1);
   const std::vector<Vec3> x = placed(mesh, [](const Vec2& p) { return Vec3(p.x(), p.y(), p.y() > 0 ? -p.y() : 0.0); });
-  const Projection found =
-      project_blade(mesh, x, {{0.03, -0.02, 1e-4}, {0.03, 0.02, 1e-4}}, {triangle_at(mesh, {0.03, -0.005})}, 1e-3, {.reach = 3e-3});
-  ASSERT_TRUE(found) << found.refusal;
-  EXPECT_GT(found.line.back().y(), 2.5e-3);
-  EXPECT_LT(found.line.back().y(), 4.5e-3);  // a cell more, and the slope
+  std::vector<Vec3> blade{{0.03, -0.02, 1e-4}, {0.03, 0.02, 1e-4}};
+  for (int run = 0; run < 2; ++run) {
+    const Projection found = project_blade(mesh, x, blade, {triangle_at(mesh, {0.03, -0.005})}, 0.01, {.reach = 3e-3});
+    ASSERT_TRUE(found) << found.refusal;
+    const Vec2 end = run == 0 ? found.line.back() : found.line.front();
+    EXPECT_GT(end.y(), 2.5e-3);
+    EXPECT_LT(end.y(), 4.5e-3);  // a cell or two more, and no overshoot
+    std::reverse(blade.begin(), blade.end());
+  }
 }
 TEST(ProjectBlade, WrongInputIsAnError) {
   const StripMesh mesh = strip();

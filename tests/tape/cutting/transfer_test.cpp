@@ -137,6 +137,15 @@ TEST(Transfer, TheCorrectionIsARigidMotionOfEachPiece) {
   }
   EXPECT_NEAR(now.largest_change, largest, 1e-15);
 }
+TEST(Transfer, WhereTheOriginIsDoesNotMatter) {
+  const Moving m = moving();
+  const Cut cut = cut_kerf(m.mesh, kLine, {}, {});
+  ASSERT_TRUE(cut);
+  std::vector<Vec3> far = m.x;
+  for (Vec3& p : far) p += Vec3(3, -2, 1);
+  const MovedOn here = move_on(m.mesh, cut, m.x, m.v, kPerArea), there = move_on(m.mesh, cut, far, m.v, kPerArea);
+  for (std::size_t i = 0; i < here.v.size(); ++i) expect_near(here.v[i], there.v[i], 1e-9);
+}
 TEST(Transfer, APieceThatIsNotCutKeepsItsVelocitiesToTheBit) {
   const Moving m = moving();
   const Cut first = cut_kerf(m.mesh, kLine, {}, {});
