@@ -64,28 +64,6 @@ StripMesh crossed(const Grid& grid) {
   return mesh;
 }
 
-/// Numbers the vertices by x, so that neighbours stand close together.
-void number_by_x(StripMesh& mesh) {
-  std::vector<int> order(mesh.rest.size()), rank(mesh.rest.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int a, int b) {
-    const Vec2 &p = mesh.rest[a], &q = mesh.rest[b];
-    return p.x() != q.x() ? p.x() < q.x() : p.y() < q.y();
-  });
-  std::vector<Vec2> sorted;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    rank[order[i]] = static_cast<int>(i);
-    sorted.push_back(mesh.rest[order[i]]);
-  }
-  mesh.rest = std::move(sorted);
-  mesh.columns = 1;
-  for (Index3& t : mesh.triangles) {
-    t = {rank[t[0]], rank[t[1]], rank[t[2]]};
-    mesh.columns = std::max(mesh.columns, t.maxCoeff() - t.minCoeff());
-  }
-  mesh.rows = (static_cast<int>(mesh.rest.size()) + mesh.columns - 1) / mesh.columns;
-}
-
 StripMesh irregular(const Grid& grid, int seed) {
   StripMesh mesh = lattice(grid, true);
   std::mt19937_64 generator(static_cast<std::uint64_t>(seed));
@@ -187,6 +165,28 @@ StripMesh make_strip_mesh(const StripParams& params, Real width, int seed) {
     default:
       return lattice(grid, params.pattern == MeshPattern::alternating);
   }
+}
+
+std::vector<int> number_by_x(StripMesh& mesh) {
+  std::vector<int> order(mesh.rest.size()), rank(mesh.rest.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    const Vec2 &p = mesh.rest[a], &q = mesh.rest[b];
+    return p.x() != q.x() ? p.x() < q.x() : p.y() < q.y();
+  });
+  std::vector<Vec2> sorted;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    rank[order[i]] = static_cast<int>(i);
+    sorted.push_back(mesh.rest[order[i]]);
+  }
+  mesh.rest = std::move(sorted);
+  mesh.columns = 1;
+  for (Index3& t : mesh.triangles) {
+    t = {rank[t[0]], rank[t[1]], rank[t[2]]};
+    mesh.columns = std::max(mesh.columns, t.maxCoeff() - t.minCoeff());
+  }
+  mesh.rows = (static_cast<int>(mesh.rest.size()) + mesh.columns - 1) / mesh.columns;
+  return rank;
 }
 
 std::vector<Vec3> place(const StripMesh& mesh, const Strip& strip) {

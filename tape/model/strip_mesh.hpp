@@ -19,6 +19,10 @@ Real cell_length(const StripParams& params, Real width);
 /// @throws InputError if the settings cannot be meshed (such as a grid angle without pattern `same`)
 StripMesh make_strip_mesh(const StripParams& params, Real width, int seed);
 
+/// Numbers the vertices by x, then y, so that neighbours stand close together.
+/// @returns the new number of each vertex
+std::vector<int> number_by_x(StripMesh& mesh);
+
 /// Positions [n] m of the strip at the start: settled ones, or its centreline follows `strip.path` or `strip.winding` and cross-sections
 /// stay straight.
 /// The centreline keeps its length along the arcs of a path; chords of cells are shorter by the factor sin(a)/a, a = cell/(2 radius).
