@@ -9,8 +9,10 @@
 
 namespace tape::render {
 /// What the colour of a thing means.
-enum class ColorBy { material, strain, contact_force, adhesion, part };
-constexpr auto enum_names(ColorBy) { return std::array<std::string_view, 5>{"material", "strain", "contact_force", "adhesion", "part"}; }
+enum class ColorBy { material, strain, tension, contact_force, adhesion, part };
+constexpr auto enum_names(ColorBy) {
+  return std::array<std::string_view, 6>{"material", "strain", "tension", "contact_force", "adhesion", "part"};
+}
 
 /// `sequential`: violet over green to yellow, lightness linear in the value. `diverging`: blue over near white to red, for signed
 /// values with a range symmetric about 0.

@@ -92,6 +92,8 @@ Json settings_json(const Setup& setup, const cosim::RobotScene& robots) {
     json["axles"].push_back({{"body", axle.body}, {"to", axle.to}});
     add_fields(json["axles"].back(), axle.params);
   }
+  for (const Blade& blade : scene.blades) json["cutting"]["blades"].push_back(blade.body);
+  if (!scene.blades.empty()) add_fields(json["cutting"], setup.cutting);
   for (const cosim::RobotPart& part : robots.robots) json["robots"][part.name] = robot_json(part, scene);
   if (!robots.robots.empty()) {
     json["physics"] = {{"substep", robots.world.substep}};
@@ -107,6 +109,27 @@ Json settings_json(const Setup& setup, const cosim::RobotScene& robots) {
   for (const auto& [name, on] : setup.forced) json["effects"][name] = on;
   return json;
 }
+
+namespace {
+Json cuts_json(const RunSummary& s) {
+  Json list = Json::array();
+  for (const auto& [time, cut] : s.cuts) {
+    Json one = {{"time_s", time}, {"blade", cut.blade}, {"strip", cut.strip}, {"pressure_Pa", cut.pressure}};
+    if (!cut.refusal.empty()) {
+      one["refused"] = cut.refusal;
+    } else {
+      one.update({{"pieces", cut.pieces},
+                  {"kerf_area_m2", cut.kerf_area},
+                  {"kerf_mass_kg", cut.kerf_mass},
+                  {"smallest_angle_deg", cut.smallest_angle},
+                  {"deviation_m", cut.deviation},
+                  {"momentum_correction_m_per_s", cut.largest_change}});
+    }
+    list.push_back(one);
+  }
+  return list;
+}
+}  // namespace
 
 Json report_json(const Provenance& provenance, const World& world, const cosim::RobotScene& robots, const RunSummary& s) {
   Json json = {{"status", s.status}};
@@ -136,6 +159,7 @@ Json report_json(const Provenance& provenance, const World& world, const cosim::
   json["effects"] = effects_json(s);
   json["stages_ms_per_step"] = Json::object();
   for (const StageReport& stage : s.stages) json["stages_ms_per_step"][stage.name] = stage.ms;
+  if (!world.setup.scene.blades.empty()) json["cuts"] = cuts_json(s);
   json["conditions"] = conditions_json(s);
   json["figures"] = Json::object();
   for (const auto& [name, value] : s.figures) json["figures"][name] = value;

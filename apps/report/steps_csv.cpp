@@ -51,6 +51,12 @@ void visit_columns(const World& world, const cosim::StepRow& row, const F& f) {
         vector("link_" + links[l] + what, "N", wrench.force), vector("link_" + links[l] + what, "Nm", wrench.torque);
     }
   }
+  if (!world.setup.scene.blades.empty()) {
+    Real pressure = 0;
+    for (const BladePressure& p : r.blades) pressure = std::max(pressure, p.peak);
+    const auto made = std::ranges::count_if(row.cuts, [](const CutReport& c) { return c.refusal.empty(); });
+    f("blade_pressure_Pa", pressure), f("cuts", static_cast<Real>(made)), f("cuts_refused", static_cast<Real>(std::ssize(row.cuts) - made));
+  }
   if (!world.setup.scene.articulations.empty())
     f("momentum_exchange_residual", r.exchange_residual.value_or(std::numeric_limits<Real>::quiet_NaN()));
 }

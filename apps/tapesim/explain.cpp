@@ -48,7 +48,7 @@ std::vector<Line> stages(const World& world, const cosim::RobotScene& robots) {
       {"line_search", true, "every step"},
       {"history", !remembering.empty(), remembering.empty() ? "no effect that is on remembers" : remembering},
       {"reduction", !world.graphs.empty(), world.graphs.empty() ? "no model that is reduced" : "model"},
-      {"cutting", false, "not in this build"},
+      {"cutting", !world.setup.scene.blades.empty(), world.setup.scene.blades.empty() ? "no blades" : "cutting"},
       {"sleeping", false, "not in this build"},
       {"cosim", !robots.robots.empty(), robots.robots.empty() ? "no robots" : "robots"},
   };

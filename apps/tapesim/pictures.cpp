@@ -39,17 +39,17 @@ class Studio {
   int height() const { return views_[0].camera.height; }
 
   render::Picture draw(const RecordedFrame& frame) {
-    const RecordedMesh& mesh = recording_.mesh();
+    const RecordedMesh& mesh = recording_.mesh(frame.mesh);
     const std::vector<Vec3> x = vertex_positions(mesh, frame);
     render::RenderScene scene{.bounds = everything_, .caption = fmt::format("{}   t = {:.2f} s", mesh.scene, frame.time)};
     if (params_.view.ground) scene.ground = everything_.min().z();
     const std::vector<Vec3> colors = vertex_colors(frame, x);
-    for (std::size_t o = 0; o < mesh.objects.size(); ++o) scene.meshes.push_back(object_mesh(o, x, colors));
+    for (std::size_t o = 0; o < mesh.objects.size(); ++o) scene.meshes.push_back(object_mesh(mesh, o, x, colors));
     scene.legends.push_back(legend());
     std::vector<render::Picture> pictures;
     for (View& view : views_) {
       render::Camera camera = view.camera;
-      if (!view.follow.empty()) camera.X_WC.position += place(view.follow, x) - view.start;
+      if (!view.follow.empty()) camera.X_WC.position += place(view.follow, frame) - view.start;
       if (!view.mount.empty()) camera.X_WC = on(frame_of(view.mount, frame), camera.X_WC);
       pictures.push_back(renderer_.draw(scene, camera));
       scene.legends.clear(), scene.caption.clear();  // once
@@ -58,17 +58,17 @@ class Studio {
   }
 
  private:
-  /// A camera, and the vertices whose middle it moves along with.
+  /// A camera, and the thing whose middle it moves along with.
   struct View {
     render::Camera camera;
-    std::vector<int> follow = {};
-    Vec3 start = Vec3::Zero();  ///< [m] their middle in the first state
+    std::string follow = {};
+    Vec3 start = Vec3::Zero();  ///< [m] its middle in the first state
     std::string mount = {};     ///< what its pose is in the frame of
   };
   static Pose on(const Pose& X_WB, const Pose& X_BC) { return {X_WB.rotation * X_BC.rotation, apply(X_WB, X_BC.position)}; }
   /// Frame of a body or a link. @throws InputError if nothing is named so
   Pose frame_of(const std::string& name, const RecordedFrame& frame) const {
-    const RecordedMesh& mesh = recording_.mesh();
+    const RecordedMesh& mesh = recording_.mesh(frame.mesh);
     std::size_t body = 0;
     for (const cosim::RecordedObject& object : mesh.objects) {
       if (object.strip) continue;
@@ -108,7 +108,7 @@ class Studio {
   }
 
   std::vector<Vec3> vertex_colors(const RecordedFrame& frame, const std::vector<Vec3>& x) const {
-    const RecordedMesh& mesh = recording_.mesh();
+    const RecordedMesh& mesh = recording_.mesh(frame.mesh);
     if (params_.view.color == ColorBy::material && params_.view.track < 0) return {};
     std::vector<Vec3> colors(x.size(), Vec3::Zero());
     for (std::size_t o = 0; o < mesh.objects.size(); ++o)
@@ -117,17 +117,17 @@ class Studio {
     if (params_.view.color == ColorBy::part)
       for (std::size_t v = 0; v < frame.part.size(); ++v) colors[v] = kParts[static_cast<std::size_t>(frame.part[v])].color;
     if (!by_thing()) colors = render::colors_of(values(frame, x), bar_);
-    for (int v : tracked_) colors[static_cast<std::size_t>(v)] = kTracked;
+    if (params_.view.track >= 0)
+      for (int v : row_at(mesh, params_.view.track)) colors[static_cast<std::size_t>(v)] = kTracked;
     return colors;
   }
 
   /// Vertices of the row of the first strip that lies nearest to this place [m] at rest.
-  std::vector<int> row_at(Real along) const {
-    const RecordedMesh& mesh = recording_.mesh();
+  static std::vector<int> row_at(const RecordedMesh& mesh, Real along) {
     std::vector<int> of_strip, row;
     for (const cosim::RecordedObject& object : mesh.objects) {
       if (!object.strip) continue;
-      of_strip = vertices_of(object);
+      of_strip = vertices_of(mesh, object);
       break;
     }
     const auto off = [&](int v) { return std::fabs(mesh.rest[static_cast<std::size_t>(v)].x() - along); };
@@ -137,17 +137,17 @@ class Studio {
       if (off(v) < nearest + 1e-9) row.push_back(v);
     return row;
   }
-  std::vector<int> vertices_of(const cosim::RecordedObject& object) const {
+  static std::vector<int> vertices_of(const RecordedMesh& mesh, const cosim::RecordedObject& object) {
     std::set<int> found;
     for (int t = object.first_triangle; t < object.first_triangle + object.triangles; ++t)
-      for (int v : recording_.mesh().triangles[static_cast<std::size_t>(t)]) found.insert(v);
+      for (int v : mesh.triangles[static_cast<std::size_t>(t)]) found.insert(v);
     return {found.begin(), found.end()};
   }
   /// @throws InputError if nothing is named so
-  std::vector<int> vertices_named(const std::string& name) const {
+  static std::vector<int> vertices_named(const RecordedMesh& mesh, const std::string& name) {
     std::string names;
-    for (const cosim::RecordedObject& object : recording_.mesh().objects) {
-      const std::vector<int> all = vertices_of(object);
+    for (const cosim::RecordedObject& object : mesh.objects) {
+      const std::vector<int> all = vertices_of(mesh, object);
       if (object.name == name) return all;
       names += (names.empty() ? "" : ", ") + object.name;
       if (!object.strip) continue;
@@ -155,21 +155,23 @@ class Studio {
       if (object.name + ".tip" != name) continue;
       Real length = 0;
       std::vector<int> tip;
-      const auto along = [&](int v) { return recording_.mesh().rest[static_cast<std::size_t>(v)].x(); };
+      const auto along = [&](int v) { return mesh.rest[static_cast<std::size_t>(v)].x(); };
       for (int v : all) length = std::max(length, along(v));
       std::copy_if(all.begin(), all.end(), std::back_inserter(tip), [&](int v) { return along(v) > length - 1e-9; });
       return tip;
     }
     throw InputError("camera.follow = " + name + ": no thing of the scene has this name (allowed: " + names + ")");
   }
-  static Vec3 place(const std::vector<int>& vertices, const std::vector<Vec3>& x) {
+  Vec3 place(const std::string& name, const RecordedFrame& frame) const {
+    const RecordedMesh& mesh = recording_.mesh(frame.mesh);
+    const std::vector<int> vertices = vertices_named(mesh, name);
+    const std::vector<Vec3> x = vertex_positions(mesh, frame);
     Vec3 sum = Vec3::Zero();
     for (int v : vertices) sum += x[static_cast<std::size_t>(v)];
     return sum / static_cast<Real>(vertices.size());
   }
 
-  render::Mesh object_mesh(std::size_t o, const std::vector<Vec3>& x, const std::vector<Vec3>& colors) const {
-    const RecordedMesh& recorded = recording_.mesh();
+  render::Mesh object_mesh(const RecordedMesh& recorded, std::size_t o, const std::vector<Vec3>& x, const std::vector<Vec3>& colors) const {
     const cosim::RecordedObject& object = recorded.objects[o];
     render::Mesh mesh{.colors = {}};
     std::vector<int> place(x.size(), -1);
@@ -194,7 +196,7 @@ class Studio {
 
   /// Of strips; forces of bodies only where there is no strip, for they stand on vertices that may be far from where the contact is.
   std::vector<Real> values(const RecordedFrame& frame, const std::vector<Vec3>& x) const {
-    const RecordedMesh& mesh = recording_.mesh();
+    const RecordedMesh& mesh = recording_.mesh(frame.mesh);
     if (params_.view.color == ColorBy::contact_force) {
       std::vector<Real> force = frame.contact_force;
       if (mesh.strip_vertices > 0) std::fill(force.begin() + mesh.strip_vertices, force.end(), std::numeric_limits<Real>::quiet_NaN());
@@ -205,17 +207,22 @@ class Studio {
       engagement.resize(x.size(), std::numeric_limits<Real>::quiet_NaN());
       return engagement;
     }
+    if (params_.view.color == ColorBy::tension) {
+      std::vector<report::FilmStiffness> film(mesh.triangles.size());
+      for (const cosim::RecordedObject& o : mesh.objects)
+        for (int t = o.first_triangle; t < o.first_triangle + o.triangles; ++t) film[static_cast<std::size_t>(t)] = {o.stretch, o.poisson};
+      return report::vertex_tension(mesh.triangles, mesh.rest, x, mesh.strip_vertices, film);
+    }
     return report::vertex_strain(mesh.triangles, mesh.rest, x, mesh.strip_vertices);
   }
 
   /// The bounds of the whole motion, and the range of values that are to be seen in it: up to what 95 % of the states stay below, so
   /// that a short impact does not leave all others dark.
   void look_through() {
-    if (params_.view.track >= 0) tracked_ = row_at(params_.view.track);
     std::vector<Real> largest;  // of each state
     for (int i = 0; i < recording_.frames(); ++i) {
       const RecordedFrame frame = recording_.frame(i);
-      const std::vector<Vec3> x = vertex_positions(recording_.mesh(), frame);
+      const std::vector<Vec3> x = vertex_positions(recording_.mesh(frame.mesh), frame);
       for (const Vec3& p : x) everything_.extend(p);
       if (by_thing() || params_.view.color == ColorBy::adhesion) continue;
       largest.push_back(0);
@@ -227,11 +234,11 @@ class Studio {
       return;
     }
     if (by_thing()) return;
-    const bool strain = params_.view.color == ColorBy::strain;
+    const bool strain = params_.view.color == ColorBy::strain, tension = params_.view.color == ColorBy::tension;
+    const std::string title = strain ? "largest strain" : tension ? "membrane tension" : "contact force";
     const cosim::Distribution peaks = cosim::distribution(largest);
-    const std::string cut = peaks.max > peaks.p95 ? ", peaks cut" : "";
-    bar_ = render::bar_over({0, peaks.p95}, (strain ? "largest strain" : "contact force") + cut, strain ? "" : "N");
-    bar_.low = 0;  // both are magnitudes
+    bar_ = render::bar_over({0, peaks.p95}, title + (peaks.max > peaks.p95 ? ", peaks cut" : ""), strain ? "" : tension ? "N/m" : "N");
+    bar_.low = 0;  // what is below is slack, or there is none
   }
 
   std::vector<View> make_views() const {
@@ -246,8 +253,8 @@ class Studio {
       View view{.camera = render::Camera::make(*look, width, height), .mount = look->mount};
       if (!look->mount.empty() && !look->follow.empty()) throw InputError("camera: follow and mount exclude each other");
       if (!look->follow.empty()) {
-        view.follow = vertices_named(look->follow);
-        view.start = place(view.follow, vertex_positions(recording_.mesh(), recording_.frame(0)));
+        view.follow = look->follow;
+        view.start = place(view.follow, recording_.frame(0));
       }
       views.push_back(view);
     }
@@ -257,14 +264,18 @@ class Studio {
 
   /// Of strips and of bodies that move.
   render::Bounds moving_bounds() const {
-    const RecordedMesh& mesh = recording_.mesh();
     render::Bounds moving, all;
-    const std::vector<Vec3> first = vertex_positions(mesh, recording_.frame(0));
+    const std::vector<Pose> first = recording_.frame(0).bodies;
     for (int i = 0; i < recording_.frames(); ++i) {
-      const std::vector<Vec3> x = vertex_positions(mesh, recording_.frame(i));
+      const RecordedFrame frame = recording_.frame(i);
+      const RecordedMesh& mesh = recording_.mesh(frame.mesh);
+      const std::vector<Vec3> x = vertex_positions(mesh, frame);
       for (std::size_t v = 0; v < x.size(); ++v) {
         all.extend(x[v]);
-        if (mesh.body[v] < 0 || x[v] != first[v]) moving.extend(x[v]);
+        const auto moved = [&](std::size_t b) {
+          return frame.bodies[b].position != first[b].position || frame.bodies[b].rotation != first[b].rotation;
+        };
+        if (mesh.body[v] < 0 || moved(static_cast<std::size_t>(mesh.body[v]))) moving.extend(x[v]);
       }
     }
     return moving.isEmpty() ? all : moving;
@@ -275,7 +286,6 @@ class Studio {
   std::vector<View> views_;
   render::Renderer renderer_;
   render::Bounds everything_;
-  std::vector<int> tracked_;
   render::ColorBar bar_;
 };
 

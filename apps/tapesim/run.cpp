@@ -36,8 +36,8 @@ Backend backend_of(const std::string& name) {
 
 bool runs_on_cuda(Backend backend) { return backend == Backend::cuda || (backend == Backend::automatic && cuda_available()); }
 
-cosim::RunLog simulate(const RunArguments& arguments, const LoadedWorld& loaded, Stepper& stepper, State& state, RunFolder& folder) {
-  const World& world = loaded.world;
+cosim::RunLog simulate(const RunArguments& arguments, LoadedWorld& loaded, Stepper& stepper, State& state, RunFolder& folder) {
+  World& world = loaded.world;
   const int first = state.step;
   const int planned = cosim::planned_steps(world.setup.scene) - first;
   Progress progress("run", arguments.steps < 0 ? planned : std::min(planned, arguments.steps));
@@ -47,6 +47,7 @@ cosim::RunLog simulate(const RunArguments& arguments, const LoadedWorld& loaded,
     folder.add_step(row);
     progress.update(now.step - first, fmt::format("t {:.3f} s, {:.1f} ms/step", now.time, row.report.wall_ms));
   };
+  options.on_cut = [&] { folder.start_mesh(); };
   const auto* coupled = dynamic_cast<const cosim::CoupledStepper*>(&stepper);  // none where there are no robots
   options.on_record = [&](const State& now) {
     folder.add_state(now, now.step > first ? stepper.contact_force() : std::vector<Real>(),
@@ -107,10 +108,14 @@ State resumed(const std::string& file, const World& world) {
 int run(const RunArguments& arguments) {
   set_threads(arguments.threads);
   const Backend backend = backend_of(arguments.backend);
-  const LoadedWorld loaded = load_world(arguments.scene, Rolls::settle);
+  LoadedWorld loaded = load_world(arguments.scene, Rolls::settle);
   if (arguments.video) require_video(loaded.input.pictures);
   const std::unique_ptr<Stepper> stepper = cosim::make_stepper(backend, loaded.world, loaded.input.run.robots);
   State state = arguments.resume.empty() ? State::start(loaded.world) : resumed(arguments.resume, loaded.world);
+  if (!arguments.resume.empty()) {
+    loaded.world = loaded.world.with(state.remnants);
+    stepper->renew(state);
+  }
   const int first_step = state.step;
   RunFolder folder(arguments.out.empty() ? "out/" + loaded.world.setup.scene.name : arguments.out, loaded.world, loaded.input.run.robots,
                    state, camera_text(loaded.input.pictures.cameras));

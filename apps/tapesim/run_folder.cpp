@@ -23,17 +23,14 @@ fs::path made(fs::path folder) {
 }  // namespace
 
 RunFolder::RunFolder(fs::path folder, const World& world, const cosim::RobotScene& robots, const State& start, const std::string& camera)
-    : folder_(made(std::move(folder))),
-      world_(&world),
-      mesh_(cosim::RecordedMesh::of(world, robots, camera, settings_text(world, robots))),
-      steps_(folder_ / "steps.csv"),
-      states_(folder_ / "state.h5", mesh_) {
+    : folder_(made(std::move(folder))), world_(&world), robots_(robots), camera_(camera), steps_(folder_ / "steps.csv") {
   const std::string header = csv_line(report::step_columns(world));
   steps_.write(header);
-  if (start.step == 0) return;
-  keep_earlier_steps(header, start.step);
-  keep_earlier_states(start.step);
+  if (start.step > 0) keep_earlier_steps(header, start.step);
+  if (start.step == 0 || !keep_earlier_states(start.step)) states_.emplace(folder_ / "state.h5", mesh());
 }
+
+cosim::RecordedMesh RunFolder::mesh() const { return cosim::RecordedMesh::of(*world_, robots_, camera_, settings_text(*world_, robots_)); }
 
 void RunFolder::keep_earlier_steps(const std::string& header, int step) {
   std::ifstream earlier(folder_ / "steps.csv");
@@ -43,29 +40,44 @@ void RunFolder::keep_earlier_steps(const std::string& header, int step) {
     if (std::atoi(line.c_str()) <= step) steps_.write(line + '\n');
 }
 
-void RunFolder::keep_earlier_states(int step) {
-  if (!fs::exists(folder_ / "state.h5")) return;
+/// @return whether states.h5 goes on from an earlier one
+bool RunFolder::keep_earlier_states(int step) {
+  if (!fs::exists(folder_ / "state.h5")) return false;
   const cosim::StateReader earlier(folder_ / "state.h5");
-  if (earlier.mesh().triangles != mesh_.triangles || earlier.mesh().rest != mesh_.rest || earlier.mesh().robots != mesh_.robots) return;
+  const cosim::RecordedMesh now = mesh();
+  const auto same = [&](const cosim::RecordedMesh& m) { return m.triangles == now.triangles && m.rest == now.rest; };
+  int last = 0;  // mesh of the state that the run goes on from
+  while (last < earlier.meshes() && !same(earlier.mesh(last))) ++last;
+  if (last == earlier.meshes() || earlier.mesh().robots != now.robots) return false;
+  states_.emplace(folder_ / "state.h5", last == 0 ? now : earlier.mesh());
+  int written = 0;  // meshes that are started
+  const auto go_to = [&](int mesh) {
+    while (written < mesh) ++written, states_->start_mesh(earlier.mesh(written));
+  };
   for (int i = 0; i < earlier.frames(); ++i) {
     const cosim::RecordedFrame frame = earlier.frame(i);
-    if (frame.step > step) break;
-    states_.add(frame);
+    if (frame.step > step || frame.mesh > last) break;
+    go_to(frame.mesh);
+    states_->add(frame);
     last_recorded_ = frame.step;
   }
+  go_to(last);
+  return true;
 }
+
+void RunFolder::start_mesh() { states_->start_mesh(mesh()); }
 
 void RunFolder::add_step(const cosim::StepRow& row) { steps_.write(csv_line(report::step_cells(*world_, row))); }
 
 void RunFolder::add_state(const State& state, std::vector<Real> contact_force, std::vector<cosim::RobotRecord> robots) {
   if (state.step <= last_recorded_) return;
-  states_.add(cosim::RecordedFrame::of(*world_, state, std::move(contact_force), std::move(robots)));
+  states_->add(cosim::RecordedFrame::of(*world_, state, std::move(contact_force), std::move(robots)));
   last_recorded_ = state.step;
 }
 
 void RunFolder::commit(const State& state) {
   save_snapshot((folder_ / "snapshot.h5").string(), *world_, state);
-  states_.commit();
+  states_->commit();
   steps_.commit();
 }
 }  // namespace tape::tapesim

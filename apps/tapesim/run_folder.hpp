@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "cosim/run/new_file.hpp"
@@ -14,6 +15,8 @@ class RunFolder {
   /// @param camera  text of the scene's camera, for pictures made later  @throws InputError where the folder cannot be written in
   RunFolder(std::filesystem::path folder, const World& world, const cosim::RobotScene& robots, const State& start,
             const std::string& camera);
+  /// A strip was cut.
+  void start_mesh();
   void add_step(const cosim::StepRow& row);
   void add_state(const State& state, std::vector<Real> contact_force, std::vector<cosim::RobotRecord> robots);
   /// Gives all files their names, and writes the snapshot.
@@ -22,13 +25,15 @@ class RunFolder {
   std::filesystem::path operator/(const std::string& name) const { return folder_ / name; }
 
  private:
+  cosim::RecordedMesh mesh() const;
   void keep_earlier_steps(const std::string& header, int step);
-  void keep_earlier_states(int step);
+  bool keep_earlier_states(int step);
   std::filesystem::path folder_;
   const World* world_;
-  cosim::RecordedMesh mesh_;
+  cosim::RobotScene robots_;
+  std::string camera_;
   cosim::TextFile steps_;
-  cosim::StateWriter states_;
+  std::optional<cosim::StateWriter> states_;
   int last_recorded_ = -1;  // step
 };
 }  // namespace tape::tapesim

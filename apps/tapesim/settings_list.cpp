@@ -58,6 +58,7 @@ std::string settings_text() {
   add<ClusterParams>(table, "cluster");
   add<AxleParams>(table, "axles.N");
   add<ContactParams>(table, "contact");
+  add<CuttingParams>(table, "cutting");
   add<NewtonParams>(table, "solver");
   add<LinearParams>(table, "solver");
   for_each_effect([&]<class T>(std::type_identity<T>) { add<typename T::Params>(table, std::string(T::name)); });

@@ -43,7 +43,7 @@ std::string key_of(const Study& study, const std::vector<std::string>& values, c
 /// Runs a combination, unless it is kept. A numerical failure is a result; bad input is an error of the study.
 StudyRun run_one(const Study& study, const std::vector<std::string>& values, const StudyStore& store) {
   StudyRun result{.values = values};
-  const LoadedWorld loaded = load_combination(study, values);
+  LoadedWorld loaded = load_combination(study, values);
   State state = State::start(loaded.world);
   const std::string key = key_of(study, values, loaded, state);
   if (store.find(key, result)) return result;

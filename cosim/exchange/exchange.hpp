@@ -38,6 +38,7 @@ class CoupledStepper final : public tape::Stepper {
  public:
   CoupledStepper(const RobotScene& robots, const tape::World& world, std::unique_ptr<tape::Stepper> tape);
   tape::StepReport step(tape::State& state, const tape::Exchange& more = {}) override;
+  double renew(const tape::State& state) override { return tape_->renew(state); }
   std::vector<double> contact_force() const override { return tape_->contact_force(); }
   const robot::World& bullet() const { return bullet_; }
   const ExchangeReport& exchange() const { return report_; }

@@ -89,7 +89,7 @@ Setup roll_alone(const Setup& setup, std::size_t strip) {
   tape.film = 0;
   scene.strips = {tape};
   scene.bodies = {hub};
-  scene.grips.clear(), scene.axles.clear(), scene.articulations.clear();
+  scene.grips.clear(), scene.axles.clear(), scene.articulations.clear(), scene.blades.clear();
   scene.model.reset();
   scene.gravity.setZero();
   scene.time = {.dt = kDt, .duration = 1};

@@ -10,7 +10,7 @@ class EnergyLedger {
  public:
   struct Entry {
     Real potential = 0;  ///< [J] of all conservative effects, from the first step on
-    Real work = 0;       ///< [J] put in by grips, driven bodies, axles and adhesion that renews itself, since the first step
+    Real work = 0;       ///< [J] put in by grips, driven bodies, axles, cuts and adhesion that renews itself, since the first step
     Real balance = 0;    ///< [J] kinetic + potential - work, since the first step; positive: energy from nowhere
     Real scale = 0;      ///< [J] largest energy that has been about since the first step
   };
@@ -19,6 +19,8 @@ class EnergyLedger {
   void before(const State& state, Real dt);
   /// After it; `state` and `report` are the step's outcome.
   Entry after(const State& state, const StepReport& report);
+  /// Between two steps: what a cut takes out of the run, or puts in. @param work  [J]
+  void add_work(Real work) { work_ += work; }
 
  private:
   Real body_work(const State& state) const;

@@ -189,6 +189,17 @@ FigureValues peel_force(const World& world, const RunLog& log) {
   return {{"peel_force_median_N", over_steps.p50}, {"peel_force_mean_N", over_steps.mean}, {"peel_force_max_N", over_steps.max}};
 }
 
+FigureValues cuts(const World& world, const RunLog& log) {
+  Real made = 0, refused = 0, area = 0, pieces = static_cast<Real>(world.setup.scene.strips.size());
+  for (const StepRow& row : log.rows)
+    for (const CutReport& cut : row.cuts) {
+      (cut.refusal.empty() ? made : refused) += 1;
+      area += cut.kerf_area;
+      if (cut.refusal.empty()) pieces = cut.pieces;
+    }
+  return {{"cut_events", made}, {"cuts_refused", refused}, {"kerf_area_m2", area}, {"strip_pieces", pieces}};
+}
+
 constexpr Figure kFigures[] = {
     {"tip", "where the tip of the first strip ends, from its root: drop along -z, reach across", tip},
     {"grip_force", "force of each grip: mean over the second half of the run, and largest", grip_force},
@@ -206,6 +217,7 @@ constexpr Figure kFigures[] = {
     {"momentum_exchange",
      "momentum given to robots with a free base that did not arrive, of what was given: worst step; nothing if none was touched",
      momentum_exchange},
+    {"cuts", "cuts made and refused, area of all kerfs, pieces of the strip that was cut last", cuts},
     {"roll", "turns, length, outer radius, mass and inertia of what is wound at the end", roll},
 };
 
@@ -231,6 +243,7 @@ std::string why_unfit(std::string_view name, const World& world) {
   if (name == "tip" && scene.strips.empty()) return "the scene has no strip";
   if (name == "capstan_ratio" && scene.grips.size() < 2) return "the scene has fewer than two grips";
   if ((name == "link_force" || name == "momentum_exchange") && scene.articulations.empty()) return "the scene has no robot that moves";
+  if (name == "cuts" && scene.blades.empty()) return "the scene has no blade";
   const bool of_roll = name == "hub_range" || name == "hub_travel" || name == "roll";
   if (of_roll && first_roll(world) == scene.strips.size()) return "the scene has no roll";
   const bool of_interface = name == "peel_force" || name == "boundary_advance";

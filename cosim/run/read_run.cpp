@@ -16,6 +16,8 @@ RunInput read_run(SceneFile scene) {
   for (const auto& [name, chosen] : file.switches("effects", effects)) input.setup.forced[name] = chosen.on;
   file.read("solver", input.setup.newton);
   file.read("solver", input.setup.linear);
+  file.read("cutting", input.setup.cutting);
+  if (file["cutting"] && input.setup.scene.blades.empty()) file["cutting"].fail("it names no blades");
   file.read("record", input.record);
   if (const Reader figures = file["record"]["figures"]) input.figures = figures.texts();
   const Reader roll = file["roll"];

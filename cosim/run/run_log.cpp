@@ -7,6 +7,7 @@
 
 #include "cosim/run/event_watch.hpp"
 #include "tape/contact/intersection.hpp"
+#include "tape/core/stopwatch.hpp"
 
 namespace cosim {
 namespace {
@@ -29,11 +30,30 @@ void record(RunLog& log, const World& world, const State& state, const RunOption
   log.intersections += find_intersections(world.surface, vertex_positions(world, state)).count;
   if (options.on_record) options.on_record(state);
 }
+/// Cuts what blades have pressed long enough. @return whether the world has changed
+bool cut(World& world, Stepper& stepper, State& state, EnergyLedger& ledger, StepRow& row) {
+  Real ms = 0;
+  {
+    const Stopwatch watch(ms);
+    row.cuts = cut_strips(world, state, row.report.blades);
+  }
+  row.report.wall_ms += ms;
+  for (StageReport& stage : row.report.stages)
+    if (stage.name == "cutting") stage.ms += ms;
+  const bool made = std::ranges::any_of(row.cuts, [](const CutReport& c) { return c.refusal.empty(); });
+  if (!made) return false;
+  Real stored = 0;
+  for (const EffectReport& effect : row.report.effects) stored += effect.energy;
+  Real change = stepper.renew(state) - stored;
+  for (const CutReport& c : row.cuts) change += c.kinetic;
+  ledger.add_work(change);
+  return true;
+}
 }  // namespace
 
 int planned_steps(const Scene& scene) { return static_cast<int>(std::lround(scene.time.duration / scene.time.dt)); }
 
-RunLog simulate(const World& world, Stepper& stepper, State& state, const RunOptions& options) {
+RunLog simulate(World& world, Stepper& stepper, State& state, const RunOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   const int planned = planned_steps(world.setup.scene);
   const int last = options.max_steps < 0 || options.max_steps > planned - state.step ? planned : state.step + options.max_steps;
@@ -57,6 +77,7 @@ RunLog simulate(const World& world, Stepper& stepper, State& state, const RunOpt
     note_events(options.events, world, report, state);
     const EnergyLedger::Entry energy = ledger.after(state, report);
     log.rows.push_back({state.step, state.time, std::move(report), energy});
+    if (cut(world, stepper, state, ledger, log.rows.back()) && options.on_cut) options.on_cut();
     if (options.on_step) options.on_step(state, log.rows.back());
     if (clock.due(state.time)) {
       record(log, world, state, options);

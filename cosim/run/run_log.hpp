@@ -5,6 +5,7 @@
 
 #include "cosim/run/energy_ledger.hpp"
 #include "cosim/scene/event.hpp"
+#include "tape/step/cut.hpp"
 #include "tape/step/stepper.hpp"
 
 namespace cosim {
@@ -14,6 +15,7 @@ struct StepRow {
   Real time = 0;  ///< [s] at its end
   StepReport report;
   EnergyLedger::Entry energy;
+  std::vector<CutReport> cuts = {};  ///< made or refused after the step
 };
 
 /// Everything about a run that a report, its figures and its conditions are computed from.
@@ -44,12 +46,13 @@ struct RunOptions {
   std::vector<Event> events{};                                  ///< that the script waits for
   std::function<bool()> stop_asked{};                           ///< asked before each step; may be empty
   std::function<void(const State&, const StepRow&)> on_step{};  ///< after each completed step; may be empty
+  std::function<void()> on_cut{};                               ///< when a strip was cut: the world has changed; may be empty
   std::function<void(const State&)> on_record{};                ///< at the start, at the rate asked for, and at the end; may be empty
 };
 
 /// Steps that a scene asks for: duration / dt, rounded.
 int planned_steps(const Scene& scene);
 
-/// Runs a state to the end of the scene, or until something stops it.
-RunLog simulate(const World& world, Stepper& stepper, State& state, const RunOptions& options);
+/// Runs a state to the end of the scene, or until something stops it. Cuts change the world.
+RunLog simulate(World& world, Stepper& stepper, State& state, const RunOptions& options);
 }  // namespace cosim

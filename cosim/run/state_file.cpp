@@ -8,7 +8,7 @@
 
 namespace cosim {
 namespace {
-constexpr const char* kFormat = "tape states 4";
+constexpr const char* kFormat = "tape states 5";
 
 constexpr const char* kAbout =
     "SI units: m, s, kg, N, N m, rad. x: positions of the strips' vertices in the world. pose: of each body's frame B in the world, the "
@@ -19,7 +19,11 @@ constexpr const char* kAbout =
     "joints.NAME (rad, m, "
     "N m, N); links: of each link's frame in the world, in the order of attribute links.NAME, the position, then the quaternion w x y z; "
     "wrench: of the "
-    "tape side on each link, force, then torque about the link's origin, in world axes, mean over the step. time: s at the end of step.";
+    "tape side on each link, force, then torque about the link's origin, in world axes, mean over the step. time: s at the end of step. "
+    "mesh: how often strips had been cut; after the k-th cut the arrays of vertices and triangles go on in meshK/.";
+
+/// Where the arrays stand of what a strip has become after k cuts.
+std::string mesh_folder(int k) { return k == 0 ? "" : "mesh" + std::to_string(k) + "/"; }
 
 /// Matrices of equal size, one after the other.
 template <class T, class M>
@@ -55,10 +59,12 @@ std::string joined_lines(const std::vector<std::string>& all) {
   return text;
 }
 
-std::vector<RecordedObject> read_objects(const Hdf5Reader& file) {
-  const std::vector<int> numbers = file.read_ints("objects");
+std::vector<RecordedObject> read_objects(const Hdf5Reader& file, const std::string& folder) {
+  const std::vector<int> numbers = file.read_ints(folder + "objects");
+  const std::vector<double> film = file.read_reals("film");
   std::istringstream names(file.read_text("names")), materials(file.read_text("materials"));
   std::vector<RecordedObject> objects(numbers.size() / 3);
+  if (film.size() != 2 * objects.size()) return {};
   for (std::size_t i = 0; i < objects.size(); ++i) {
     RecordedObject& object = objects[i];
     std::getline(names, object.name);
@@ -66,6 +72,7 @@ std::vector<RecordedObject> read_objects(const Hdf5Reader& file) {
     object.first_triangle = numbers[3 * i];
     object.triangles = numbers[3 * i + 1];
     object.strip = numbers[3 * i + 2] != 0;
+    object.stretch = film.at(2 * i), object.poisson = film.at(2 * i + 1);
   }
   return objects;
 }
@@ -119,8 +126,10 @@ RecordedMesh RecordedMesh::of(const World& world, const RobotScene& robots, std:
   }
   const auto material = [&](int m) { return scene.materials[static_cast<std::size_t>(m)].name; };
   for (std::size_t s = 0; s < a.strips.size(); ++s) {
-    mesh.objects.push_back(
-        {scene.strips[s].name, material(scene.strips[s].material), a.strips[s].first_triangle, a.strips[s].triangles, true});
+    const Film& film = scene.films[static_cast<std::size_t>(scene.strips[s].film)];
+    const Real stretch = film.membrane_modulus * film.thickness / (1 - film.poisson * film.poisson);
+    mesh.objects.push_back({scene.strips[s].name, material(scene.strips[s].material), a.strips[s].first_triangle, a.strips[s].triangles,
+                            true, stretch, film.poisson});
     mesh.strip_vertices += a.strips[s].vertices;
   }
   for (std::size_t b = 0; b < scene.bodies.size(); ++b)
@@ -138,7 +147,8 @@ RecordedMesh RecordedMesh::of(const World& world, const RobotScene& robots, std:
 }
 
 RecordedFrame RecordedFrame::of(const World& world, const State& state, std::vector<Real> contact_force, std::vector<RobotRecord> robots) {
-  RecordedFrame frame{.step = state.step,
+  RecordedFrame frame{.mesh = 0,
+                      .step = state.step,
                       .time = state.time,
                       .x = state.x,
                       .bodies = {},
@@ -159,30 +169,41 @@ std::vector<Vec3> vertex_positions(const RecordedMesh& mesh, const RecordedFrame
 }
 
 StateWriter::StateWriter(const std::filesystem::path& name, const RecordedMesh& mesh) : file_(name) {
-  std::vector<int> objects;
-  for (const RecordedObject& o : mesh.objects) objects.insert(objects.end(), {o.first_triangle, o.triangles, o.strip ? 1 : 0});
-  const auto nv = static_cast<hsize_t>(mesh.body.size());
   file_.write_text("format", kFormat);
   file_.write_text("scene", mesh.scene);
   file_.write_text("camera", mesh.camera);
   file_.write_text("about", kAbout);
   file_.write_text("settings", mesh.settings);
-  std::vector<std::string> names;
   for (const RecordedRobot& robot : mesh.robots) {
-    names.push_back(robot.name);
+    robots_.push_back(robot.name);
     file_.write_text("joints." + robot.name, joined_lines(robot.joints));
     file_.write_text("links." + robot.name, joined_lines(robot.links));
   }
-  file_.write_text("robots", joined_lines(names));
-  robots_ = names;
+  file_.write_text("robots", joined_lines(robots_));
   file_.write_text("names", lines(mesh.objects, &RecordedObject::name));
   file_.write_text("materials", lines(mesh.objects, &RecordedObject::material));
-  file_.write("objects", objects, {mesh.objects.size(), 3});
-  file_.write("triangles", flat<int>(mesh.triangles), {mesh.triangles.size(), 3});
-  file_.write("rest", flat<double>(mesh.rest), {nv, 2});
-  file_.write("body", mesh.body, {nv});
-  file_.write("local", flat<double>(mesh.local), {nv, 3});
-  file_.write("strip_vertices", std::vector<int>{mesh.strip_vertices}, {1});
+  std::vector<double> film;
+  for (const RecordedObject& o : mesh.objects) film.insert(film.end(), {o.stretch, o.poisson});
+  file_.write("film", film, {mesh.objects.size(), 2});
+  write_mesh(mesh);
+}
+
+void StateWriter::write_mesh(const RecordedMesh& mesh) {
+  const std::string folder = mesh_folder(mesh_);
+  std::vector<int> objects;
+  for (const RecordedObject& o : mesh.objects) objects.insert(objects.end(), {o.first_triangle, o.triangles, o.strip ? 1 : 0});
+  const auto nv = static_cast<hsize_t>(mesh.body.size());
+  file_.write(folder + "objects", objects, {mesh.objects.size(), 3});
+  file_.write(folder + "triangles", flat<int>(mesh.triangles), {mesh.triangles.size(), 3});
+  file_.write(folder + "rest", flat<double>(mesh.rest), {nv, 2});
+  file_.write(folder + "body", mesh.body, {nv});
+  file_.write(folder + "local", flat<double>(mesh.local), {nv, 3});
+  file_.write(folder + "strip_vertices", std::vector<int>{mesh.strip_vertices}, {1});
+}
+
+void StateWriter::start_mesh(const RecordedMesh& mesh) {
+  ++mesh_;
+  write_mesh(mesh);
 }
 
 void StateWriter::add(const RecordedFrame& frame) {
@@ -192,19 +213,21 @@ void StateWriter::add(const RecordedFrame& frame) {
     poses.insert(poses.end(), rows.data(), rows.data() + 9);
     poses.insert(poses.end(), X.position.data(), X.position.data() + 3);
   }
+  const std::string folder = mesh_folder(mesh_);
+  file_.append("mesh", std::vector<int>{mesh_}, {1});
   file_.append("step", std::vector<int>{frame.step}, {1});
   file_.append("time", std::vector<double>{frame.time}, {1});
-  if (!frame.x.empty()) file_.append("x", flat<double>(frame.x), {frame.x.size(), 3});
+  if (!frame.x.empty()) file_.append(folder + "x", flat<double>(frame.x), {frame.x.size(), 3});
   if (!poses.empty()) file_.append("pose", poses, {frame.bodies.size(), 12});
   const auto append = [&](const char* name, const std::vector<Real>& values) {
-    file_.append(name, std::vector<float>(values.begin(), values.end()), {values.size()});
+    file_.append(folder + name, std::vector<float>(values.begin(), values.end()), {values.size()});
   };
   append("contact_force", frame.contact_force);
   if (!frame.x.empty()) {
     append("engagement", frame.engagement);
     std::vector<int> parts;
     for (TapePart part : frame.part) parts.push_back(static_cast<int>(part));
-    file_.append("part", parts, {parts.size()});
+    file_.append(folder + "part", parts, {parts.size()});
   }
   for (std::size_t r = 0; r < frame.robots.size(); ++r) add_robot("robots/" + robots_[r] + "/", frame.robots[r]);
   file_.reserve();
@@ -228,20 +251,31 @@ void StateWriter::add_robot(const std::string& folder, const RobotRecord& robot)
 
 StateReader::StateReader(const std::filesystem::path& name) : name_(name.string()), file_(name) {
   if (file_.read_text("format") != kFormat) throw InputError(name_ + ": not a recording of this version");
-  mesh_.scene = file_.read_text("scene");
-  mesh_.camera = file_.read_text("camera");
-  mesh_.settings = file_.read_text("settings");
+  mesh_of_ = file_.read_ints("mesh");
+  frames_ = static_cast<int>(mesh_of_.size());
+  const bool ascend = std::ranges::is_sorted(mesh_of_) && (mesh_of_.empty() || mesh_of_[0] == 0);
+  if (!ascend || file_.shape("step")[0] != mesh_of_.size()) throw InputError(name_ + ": damaged: its meshes are out of order");
+  for (int k = 0; k <= (mesh_of_.empty() ? 0 : mesh_of_.back()); ++k) read_mesh();
+}
+
+void StateReader::read_mesh() {
+  const std::string folder = mesh_folder(meshes());
+  RecordedMesh mesh;
+  mesh.scene = file_.read_text("scene");
+  mesh.camera = file_.read_text("camera");
+  mesh.settings = file_.read_text("settings");
   for (const std::string& robot : split(file_.read_text("robots")))
-    mesh_.robots.push_back({robot, split(file_.read_text("joints." + robot)), split(file_.read_text("links." + robot))});
-  mesh_.objects = read_objects(file_);
-  mesh_.triangles = unflat<Index3>(file_.read_ints("triangles"));
-  mesh_.rest = unflat<Vec2>(file_.read_reals("rest"));
-  mesh_.local = unflat<Vec3>(file_.read_reals("local"));
-  mesh_.body = file_.read_ints("body");
-  const std::vector<int> strip_vertices = file_.read_ints("strip_vertices");
-  mesh_.strip_vertices = strip_vertices.empty() ? -1 : strip_vertices[0];
-  frames_ = static_cast<int>(file_.shape("step")[0]);
-  if (!consistent(mesh_)) throw InputError(name_ + ": damaged: its arrays do not fit together");
+    mesh.robots.push_back({robot, split(file_.read_text("joints." + robot)), split(file_.read_text("links." + robot))});
+  mesh.objects = read_objects(file_, folder);
+  mesh.triangles = unflat<Index3>(file_.read_ints(folder + "triangles"));
+  mesh.rest = unflat<Vec2>(file_.read_reals(folder + "rest"));
+  mesh.local = unflat<Vec3>(file_.read_reals(folder + "local"));
+  mesh.body = file_.read_ints(folder + "body");
+  const std::vector<int> strip_vertices = file_.read_ints(folder + "strip_vertices");
+  mesh.strip_vertices = strip_vertices.empty() ? -1 : strip_vertices[0];
+  if (!consistent(mesh) || (!meshes_.empty() && body_count(mesh) != body_count(meshes_[0])))
+    throw InputError(name_ + ": damaged: its arrays do not fit together");
+  meshes_.push_back(std::move(mesh));
 }
 
 RobotRecord StateReader::robot_at(const RecordedRobot& robot, int i) const {
@@ -269,29 +303,28 @@ RobotRecord StateReader::robot_at(const RecordedRobot& robot, int i) const {
 }
 
 RecordedFrame StateReader::frame(int i) const {
-  RecordedFrame frame{.step = static_cast<int>(file_.read_row("step", i)[0]),
-                      .time = file_.read_row("time", i)[0],
-                      .x = {},
-                      .bodies = {},
-                      .contact_force = {},
-                      .engagement = {},
-                      .part = {},
-                      .robots = {}};
-  for (const RecordedRobot& robot : mesh_.robots) frame.robots.push_back(robot_at(robot, i));
-  if (mesh_.strip_vertices > 0) {
-    frame.x = unflat<Vec3>(file_.read_row("x", i));
-    frame.engagement = file_.read_row("engagement", i);
-    for (Real part : file_.read_row("part", i)) frame.part.push_back(static_cast<TapePart>(static_cast<int>(part)));
+  RecordedFrame frame;
+  frame.mesh = mesh_of_[static_cast<std::size_t>(i)];
+  frame.step = static_cast<int>(file_.read_row("step", i)[0]);
+  frame.time = file_.read_row("time", i)[0];
+  const RecordedMesh& of = mesh(frame.mesh);
+  const std::string folder = mesh_folder(frame.mesh);
+  const int row = i - static_cast<int>(std::ranges::lower_bound(mesh_of_, frame.mesh) - mesh_of_.begin());
+  for (const RecordedRobot& robot : of.robots) frame.robots.push_back(robot_at(robot, i));
+  if (of.strip_vertices > 0) {
+    frame.x = unflat<Vec3>(file_.read_row(folder + "x", row));
+    frame.engagement = file_.read_row(folder + "engagement", row);
+    for (Real part : file_.read_row(folder + "part", row)) frame.part.push_back(static_cast<TapePart>(static_cast<int>(part)));
   }
-  const std::vector<double> poses = body_count(mesh_) > 0 ? file_.read_row("pose", i) : std::vector<double>();
+  const std::vector<double> poses = body_count(of) > 0 ? file_.read_row("pose", i) : std::vector<double>();
   for (std::size_t p = 0; p + 12 <= poses.size(); p += 12) {
     Pose X;
     X.rotation = Eigen::Map<const Mat3>(poses.data() + p).transpose();
     X.position = Eigen::Map<const Vec3>(poses.data() + p + 9);
     frame.bodies.push_back(X);
   }
-  frame.contact_force = file_.read_row("contact_force", i);
-  if (!consistent(frame, mesh_)) throw InputError(name_ + ": damaged: its state " + std::to_string(i) + " does not fit its mesh");
+  frame.contact_force = file_.read_row(folder + "contact_force", row);
+  if (!consistent(frame, of)) throw InputError(name_ + ": damaged: its state " + std::to_string(i) + " does not fit its mesh");
   return frame;
 }
 }  // namespace cosim

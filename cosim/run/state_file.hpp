@@ -14,13 +14,14 @@ struct RecordedObject {
   std::string name, material;
   int first_triangle = 0, triangles = 0;
   bool strip = false;
+  Real stretch = 0, poisson = 0;  ///< of a strip's film: E h/(1 - nu^2) [N/m], nu
 };
 struct RecordedRobot {
   std::string name;
   std::vector<std::string> joints, links;
   bool operator==(const RecordedRobot&) const = default;
 };
-/// What a recording shows, constant over its frames.
+/// What a recording shows, constant over its frames from cut to cut.
 struct RecordedMesh {
   std::string scene;
   std::vector<RecordedObject> objects;
@@ -36,6 +37,7 @@ struct RecordedMesh {
   static RecordedMesh of(const World& world, const RobotScene& robots, std::string camera, std::string settings);
 };
 struct RecordedFrame {
+  int mesh = 0;  ///< of the recording's meshes
   int step = 0;
   Real time = 0;                    ///< [s]
   std::vector<Vec3> x;              ///< [strip vertices] m
@@ -51,18 +53,23 @@ struct RecordedFrame {
 std::vector<Vec3> vertex_positions(const RecordedMesh& mesh, const RecordedFrame& frame);
 
 /// Writes state.h5. Arrays: triangles [nt,3], rest [nv,2] m, body [nv], local [nv,3] m, objects [n,3] (first triangle, triangles, 1 for
-/// a strip); and per frame: step, time [s], x [strip vertices,3] m, pose [bodies,12] (rotation row by row, position), contact_force [nv] N,
-/// engagement [strip vertices], part [strip vertices] (0 free, 1 collar, 2 cluster); of each robot in robots/NAME/: position, velocity,
+/// a strip), film [n,2] (E h/(1 - nu^2) [N/m] and nu of a strip); and per frame: step, time [s], x [strip vertices,3] m, pose [bodies,12]
+/// (rotation row by row, position), contact_force [nv] N, engagement [strip vertices], part [strip vertices] (0 free, 1 collar, 2 cluster),
+/// mesh: after the k-th cut all arrays of vertices and triangles go on in meshK/; of each robot in robots/NAME/: position, velocity,
 /// command, effort [joints], links [links,7] (position, quaternion w x y z), wrench [links,6]. Attribute `about` says all this, with units.
 class StateWriter {
  public:
   StateWriter(const std::filesystem::path& name, const RecordedMesh& mesh);
   void add(const RecordedFrame& frame);
+  /// A strip was cut: frames from now on are of this mesh.
+  void start_mesh(const RecordedMesh& mesh);
   void commit() { file_.commit(); }
 
  private:
   void add_robot(const std::string& folder, const RobotRecord& robot);
+  void write_mesh(const RecordedMesh& mesh);
   Hdf5Writer file_;
+  int mesh_ = 0;
   std::vector<std::string> robots_;
 };
 
@@ -70,15 +77,19 @@ class StateReader {
  public:
   /// @throws InputError if the file is missing or damaged
   explicit StateReader(const std::filesystem::path& name);
-  const RecordedMesh& mesh() const { return mesh_; }
+  /// @param k  how many cuts it has gone through
+  const RecordedMesh& mesh(int k = 0) const { return meshes_[static_cast<std::size_t>(k)]; }
+  int meshes() const { return static_cast<int>(meshes_.size()); }
   int frames() const { return frames_; }
   RecordedFrame frame(int i) const;
 
  private:
+  void read_mesh();
   RobotRecord robot_at(const RecordedRobot& robot, int i) const;
   std::string name_;
   Hdf5Reader file_;
-  RecordedMesh mesh_;
+  std::vector<RecordedMesh> meshes_;
+  std::vector<int> mesh_of_;  // [frames]
   int frames_ = 0;
 };
 }  // namespace cosim

@@ -65,6 +65,8 @@ RunSummary summarize(const World& world, const RunLog& log, const std::vector<st
   s.intersections = log.intersections;
   if (!log.rows.empty() && log.rows.back().energy.scale > 0) s.energy_drift = log.rows.back().energy.balance / log.rows.back().energy.scale;
   s.state_hash = log.end.hash();
+  for (const StepRow& row : log.rows)
+    for (const CutReport& cut : row.cuts) s.cuts.emplace_back(row.time, cut);
   s.conditions = check_conditions(world, log);
   s.figures = measure_figures(figures, world, log);
   return s;

@@ -37,7 +37,8 @@ struct RunSummary {
   Real energy_drift = 0;  ///< [1] last balance / scale
   std::string state_hash;
   std::vector<EffectSummary> effects;
-  std::vector<StageReport> stages;  ///< mean over the steps
+  std::vector<StageReport> stages;               ///< mean over the steps
+  std::vector<std::pair<Real, CutReport>> cuts;  ///< [s] when, and what
   std::vector<Condition> conditions;
   FigureValues figures;
 };

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "cosim/scene/bodies.hpp"
 #include "cosim/scene/pose.hpp"
 #include "cosim/scene/robots.hpp"
 #include "cosim/scene/roll.hpp"
 #include "cosim/scene/script.hpp"
+#include "tape/model/sharp_edge.hpp"
 #include "tape/model/strip_mesh.hpp"
 
 namespace cosim {
@@ -36,6 +38,7 @@ class SceneReader {
     robots();
     for (const Reader& entry : file_["interfaces"].items()) interface(entry);
     model();
+    for (const Reader& entry : file_["cutting"]["blades"].items()) blade(entry);
     for (const Reader& entry : file_["axles"].items()) axle(entry);
     std::vector<Event> events = read_script(file_, meshes_, scene_, robots_);
     if (scene_.strips.empty() && scene_.bodies.empty()) file_.root().fail("there is nothing to simulate: neither a strip nor a body");
@@ -85,6 +88,22 @@ class SceneReader {
       const auto part = [&](int m) { return m == s.material || m == scene_.bodies[static_cast<std::size_t>(s.winding->hub)].material; };
       return s.winding && part(a) && part(b);
     });
+  }
+  /// A body or a link, whose edge is named or is where its mesh is sharp.
+  void blade(const Reader& entry) {
+    constexpr Real kSharp = std::numbers::pi / 4;
+    const Reader name = entry.is_map() ? entry["body"] : entry;
+    std::vector<std::string> names;
+    for (const tape::Body& body : scene_.bodies) names.push_back(body.name);
+    tape::Blade blade{name.text(), {}};
+    const tape::Body& body = scene_.bodies[choose(name, names)];
+    if (entry.is_map() && entry["edge"])
+      for (const Reader& corner : entry["edge"].items()) blade.edge.push_back(corner.vector(kPlace, "m"));
+    else
+      blade.edge = tape::sharp_edge(body.mesh, kSharp);
+    if (blade.edge.size() < 2)
+      name.fail("its mesh has no single line of edges sharper than 45 degrees: give the blade as {body: NAME, edge: [[x, y, z], ...]}");
+    scene_.blades.push_back(std::move(blade));
   }
   void claim_name(const std::string& name, const Reader& where) const {
     if (name.find_first_of(". ") != std::string::npos) where.fail("a name holds neither dots nor spaces");

@@ -25,8 +25,13 @@ int add_vertex(Assembly& a, const Vec3& x, VertexOwner owner, const Vec3& local 
 
 void add_strip(Assembly& a, const Scene& scene, const Strip& strip) {
   const Film& film = at(scene.films, strip.film);
-  const StripMesh mesh = make_strip_mesh(strip.mesh, film.width, scene.seed);
-  const std::vector<Vec3> x = place(mesh, strip);
+  const StripMesh whole = make_strip_mesh(strip.mesh, film.width, scene.seed);
+  const StripMesh& mesh = strip.remnant ? *strip.remnant : whole;
+  const std::vector<Vec3> placed = place(whole, strip);
+  const std::vector<int> now = survivors(whole, mesh);
+  std::vector<Vec3> x(mesh.rest.size(), Vec3::Zero());
+  for (std::size_t v = 0; v < placed.size(); ++v)
+    if (now[v] >= 0) x[static_cast<std::size_t>(now[v])] = placed[v];
   StripPart part{.film = strip.film,
                  .first_vertex = static_cast<int>(a.x.size()),
                  .first_triangle = static_cast<int>(a.triangles.size()),
@@ -119,16 +124,23 @@ int add_marker(Assembly& a, int body, const Vec3& x) {
   return add_vertex(a, x, {part.block, part.block < 0 ? -1 : body}, part.start.rotation.transpose() * (x - part.start.position));
 }
 
-/// Vertices that a grip holds; points of bodies become markers.
+/// [vertices of the whole strip] what each is now, -1: cut away
+std::vector<int> numbers(const Scene& scene, const Strip& strip) {
+  const StripMesh whole = make_strip_mesh(strip.mesh, at(scene.films, strip.film).width, scene.seed);
+  return survivors(whole, strip.remnant ? *strip.remnant : whole);
+}
+
+/// Vertices that a grip holds, but for those that were cut away; points of bodies become markers.
 std::vector<int> held_vertices(Assembly& a, const Scene& scene, const Grip& grip) {
   std::vector<int> held;
   for (std::size_t s = 0; s < scene.strips.size(); ++s) {
     if (scene.strips[s].name != grip.what.object) continue;
     const StripPart& part = a.strips[s];
+    const std::vector<int> now = numbers(scene, scene.strips[s]);
     for (int v : grip.what.vertices) {
-      if (v < 0 || v >= part.vertices)
+      if (v < 0 || v >= std::ssize(now))
         throw InputError("grip '" + grip.name + "': strip '" + grip.what.object + "' has no vertex " + std::to_string(v));
-      held.push_back(part.first_vertex + v);
+      if (at(now, v) >= 0) held.push_back(part.first_vertex + at(now, v));
     }
     return held;
   }

@@ -41,7 +41,7 @@ struct ArticulationPart {
 /// Unknowns are blocks of 3: two per body that is not fixed (translation, rotation), those of articulations, then one per strip vertex.
 /// Blocks of links follow those of their articulation.
 struct Assembly {
-  std::vector<Vec3> x;             ///< [nv] m, at the start
+  std::vector<Vec3> x;             ///< [nv] m, at the start; zero where a cut has made a vertex
   std::vector<Vec3> v;             ///< [nv] m/s, at the start; strip vertices only
   std::vector<Vec2> rest;          ///< [nv] m, flat rest position; strip vertices only
   std::vector<VertexOwner> owner;  ///< [nv]

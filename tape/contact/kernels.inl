@@ -49,7 +49,7 @@ struct SurfaceView {
             .sharing = b.sharing,
             .triangle = t};
   }
-  /// A sample of a triangle that is cut into n^2 equal ones, at the centroid of one of them, and triangle t.
+  /// A sample of a triangle that is cut into n^2 equal ones, and triangle t.
   TAPE_HD SamplePair sample_triangle(int sample, int t, int n) const {
     const SurfaceTriangle &a = triangles[sample / (n * n)], &b = triangles[t];
     SamplePair p{.v = {a.v[0], a.v[1], a.v[2], b.v[0], b.v[1], b.v[2]},
@@ -58,15 +58,7 @@ struct SurfaceView {
                  .xi = xi(a) + xi(b),
                  .area = a.area / (n * n),
                  .id = {sample, t}};
-    // Row r, counted from the first corner, holds 2 r + 1 of them: those that stand as the whole does, and upside down in between.
-    const int k = sample % (n * n);
-    int r = 0;
-    while ((r + 1) * (r + 1) <= k) ++r;
-    const int place = k - r * r, column = place / 2;
-    const bool turned = place % 2 == 1;
-    p.w[2] = (column + (turned ? 2.0 : 1.0) / 3) / n;
-    p.w[0] = 1 - (r + (turned ? 1.0 : 2.0) / 3) / n;
-    p.w[1] = 1 - p.w[0] - p.w[2];
+    sample_weights(sample % (n * n), n, p.w);
     return p;
   }
 };

@@ -23,6 +23,18 @@ struct SampleTriangle {
   TAPE_HD std::uint64_t key() const { return pair_key(sample, triangle); }
 };
 
+/// Barycentric coordinates of sample k of a triangle that is cut into n^2 equal ones: the centroid of one of them. Row r, counted from the
+/// first corner, holds 2 r + 1 of them: those that stand as the whole does, and upside down in between.
+TAPE_HD inline void sample_weights(int k, int n, Real (&w)[3]) {
+  int r = 0;
+  while ((r + 1) * (r + 1) <= k) ++r;
+  const int place = k - r * r, column = place / 2;
+  const bool turned = place % 2 == 1;
+  w[2] = (column + (turned ? 2.0 : 1.0) / 3) / n;
+  w[0] = 1 - (r + (turned ? 1.0 : 2.0) / 3) / n;
+  w[1] = 1 - w[0] - w[2];
+}
+
 /// Which of a triangle's edges and vertices other triangles have too: the barrier must count each place of a surface once.
 struct Sharing {
   std::uint16_t edge[3] = {1, 1, 1};    ///< triangles at the edge from vertex k to k + 1

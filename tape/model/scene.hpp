@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,6 +16,8 @@
 #include "tape/model/winding.hpp"
 
 namespace tape {
+struct StripMesh;
+
 enum class MeshPattern { same, alternating, crossed, irregular };
 constexpr auto enum_names(MeshPattern) { return std::array<std::string_view, 4>{"same", "alternating", "crossed", "irregular"}; }
 /// `linked`: a link of an articulation.
@@ -83,6 +86,7 @@ struct Strip {
   /// A wound strip follows this instead of `path`; `pose` is that of the roll, the axis y.
   std::optional<Winding> winding = {};
   std::vector<Vec3> settled = {};  ///< [vertices] m, in the frame of `pose`: where a roll came to rest; empty: as the winding says
+  std::shared_ptr<const StripMesh> remnant = {};  ///< what cuts have left of its mesh; none: all of it
 };
 
 /// How the interfaces inside a roll adhere, by cohesion or bonds, and whether all of its tape is a shell (f: full) or its wound part one
@@ -177,6 +181,12 @@ struct AxleJoint {
   AxleParams params;
 };
 
+/// The sharp edge of a body: tape that it presses on is cut along it.
+struct Blade {
+  std::string body;
+  std::vector<Vec3> edge;  ///< [corners] m, a line through vertices of the body's mesh, in the frame of that
+};
+
 /// Bodies that move together, as somebody else says before each step (bodies/articulation.hpp). What bodies that are `outside` meet of each
 /// other is that one's matter, unless a step says otherwise.
 struct Articulation {
@@ -203,6 +213,7 @@ struct Scene {
   std::vector<Grip> grips;
   std::vector<AxleJoint> axles;
   std::vector<Articulation> articulations;
+  std::vector<Blade> blades;
   int events = 0;  ///< that moments of grips hang on; whoever watches the run says when they happen
 
   Real dhat() const;                               ///< [m] contact.dhat, or the smallest of the films' (1e-3 without strips)

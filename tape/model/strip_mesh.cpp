@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <numeric>
 #include <random>
@@ -204,6 +205,17 @@ std::vector<Vec3> place(const StripMesh& mesh, const Strip& strip) {
     x.push_back(apply(strip.pose, {p.x(), rest.y(), p.y()}));
   }
   return x;
+}
+
+std::vector<int> survivors(const StripMesh& whole, const StripMesh& remnant) {
+  std::map<std::pair<Real, Real>, int> there;
+  for (std::size_t v = 0; v < remnant.rest.size(); ++v) there[{remnant.rest[v].x(), remnant.rest[v].y()}] = static_cast<int>(v);
+  std::vector<int> out;
+  for (const Vec2& p : whole.rest) {
+    const auto it = there.find({p.x(), p.y()});
+    out.push_back(it == there.end() ? -1 : it->second);
+  }
+  return out;
 }
 
 std::vector<int> vertices_between(const StripMesh& mesh, Real from, Real to) {

@@ -29,6 +29,9 @@ std::vector<int> number_by_x(StripMesh& mesh);
 /// @throws InputError if it settled on another mesh
 std::vector<Vec3> place(const StripMesh& mesh, const Strip& strip);
 
+/// [vertices of `whole`] the vertices of what cuts have left of it, which keep their rest positions to the bit; -1: gone
+std::vector<int> survivors(const StripMesh& whole, const StripMesh& remnant);
+
 /// Vertices with x in [from, to] m, in order.
 std::vector<int> vertices_between(const StripMesh& mesh, Real from, Real to);
 /// Vertices within `tolerance` [m] of the first or the last edge of the strip, in order.

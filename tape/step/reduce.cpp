@@ -4,19 +4,20 @@
 #include <algorithm>
 
 #include "tape/bodies/free_flight.hpp"
+#include "tape/cutting/transfer.hpp"
 #include "tape/reduction/front.hpp"
 
 namespace tape {
 namespace {
 /// A cluster of a state and what belongs to it.
-struct Place {
+struct ClusterPlace {
   std::size_t cluster, body;
   const BodyPart& part;
   const StripPart& strip;
   const StripGraph& graph;
   const Strip& roll;
 };
-Place place_of(const World& world, std::size_t cluster) {
+ClusterPlace place_of(const World& world, std::size_t cluster) {
   const std::size_t body = static_cast<std::size_t>(world.first_cluster()) + cluster;
   const BodyPart& part = world.assembly.bodies[body];
   const auto strip = static_cast<std::size_t>(part.cluster_of);
@@ -27,15 +28,28 @@ int collar(const World& world) { return world.setup.scene.cluster.collar; }
 
 Mat3 inertia_in_world(const BodyMass& mass, const Mat3& R) { return R * inertia_tensor(mass.second) * R.transpose(); }
 
-void put_to_sleep(const World& world, const Place& at, State& state) {
+void put_to_sleep(const World& world, const ClusterPlace& at, State& state) {
   const Carriage c = carry(world, state);
   EffectMemory asleep = *state.clusters[at.cluster].asleep;
   sort_pairs(world.assembly, c.owner, static_cast<int>(at.body), samples(world), state.memory, asleep);
   state.clusters[at.cluster].asleep = std::make_shared<const EffectMemory>(std::move(asleep));
 }
 
+/// Gives a cluster the momentum of its members.
+void take_motion(const World& world, const ClusterPlace& at, const std::vector<bool>& member, State& state) {
+  BodyState& body = state.bodies[at.body];
+  const Real mass = state.clusters[at.cluster].mass.mass;
+  body.velocity.setZero(), body.angular_momentum.setZero();
+  for (int v = 0; v < at.strip.vertices; ++v) {
+    if (!member[static_cast<std::size_t>(v)]) continue;
+    const auto k = static_cast<std::size_t>(at.strip.first_vertex + v);
+    body.velocity += world.assembly.mass[k] / mass * state.v[k];
+    body.angular_momentum += world.assembly.mass[k] * (state.x[k] - body.pose.position).cross(state.v[k]);
+  }
+}
+
 /// Gives back the members that the cluster no longer has. @param was  its members before
-void let_go(const World& world, const Place& at, const std::vector<bool>& was, State& state) {
+void let_go(const World& world, const ClusterPlace& at, const std::vector<bool>& was, State& state) {
   Cluster& cluster = state.clusters[at.cluster];
   BodyState& body = state.bodies[at.body];
   const std::vector<bool> is = members(world.assembly, at.strip, cluster, collar(world));
@@ -66,7 +80,7 @@ SurfaceCarriage surface_carriage(const World& world, const State& state, const C
                       .clusters = {}};
   if (!state.clusters.empty()) out.home.resize(out.owner.size(), Vec3::Zero());
   for (std::size_t k = 0; k < state.clusters.size(); ++k) {
-    const Place at = place_of(world, k);
+    const ClusterPlace at = place_of(world, k);
     if (carriage.mass[static_cast<std::size_t>(at.part.centre)] == 0) continue;  // without members
     const auto hub = world.assembly.strips.size() + static_cast<std::size_t>(at.roll.winding->hub);
     out.follows[static_cast<std::size_t>(at.part.cluster_of)] = out.follows[hub] = static_cast<int>(at.body);
@@ -76,21 +90,62 @@ SurfaceCarriage surface_carriage(const World& world, const State& state, const C
   return out;
 }
 
+std::vector<Vec3> velocities(const World& world, const State& state) {
+  std::vector<Vec3> v = state.v;
+  for (std::size_t k = 0; k < state.clusters.size(); ++k) {
+    const ClusterPlace at = place_of(world, k);
+    const BodyState& body = state.bodies[at.body];
+    const std::vector<bool> member = members(world.assembly, at.strip, state.clusters[k], collar(world));
+    const Vec3 spin = inertia_in_world(state.clusters[k].mass, body.pose.rotation).inverse() * body.angular_momentum;
+    for (std::size_t i = 0; i < member.size(); ++i)
+      if (const std::size_t w = static_cast<std::size_t>(at.strip.first_vertex) + i; member[i])
+        v[w] = body.velocity + spin.cross(state.x[w] - body.pose.position);
+  }
+  return v;
+}
+
+void cut_cluster(const World& before, const World& world, std::size_t strip, const CutInWorld& cut, State& state) {
+  for (std::size_t k = 0; k < state.clusters.size(); ++k) {
+    const ClusterPlace at = place_of(world, k);
+    Cluster& cluster = state.clusters[k];
+    cluster.asleep = std::make_shared<const EffectMemory>(carried_over(cut, *cluster.asleep));
+    if (static_cast<std::size_t>(at.part.cluster_of) != strip) continue;
+    const ClusterPlace old = place_of(before, k);
+    const std::vector<bool> was_old = members(before.assembly, old.strip, cluster, collar(before));
+    const auto n = static_cast<std::size_t>(at.strip.vertices);
+    std::vector<bool> was(n, false);
+    std::vector<int> distance(n, 0), free;
+    for (std::size_t v = 0; v < was_old.size(); ++v) {
+      const int now = cut.cut.new_vertex[v];
+      if (now < 0) continue;
+      was[static_cast<std::size_t>(now)] = was_old[v];
+      distance[static_cast<std::size_t>(now)] = (*cluster.distance)[v];
+    }
+    for (std::size_t v = 0; v < n; ++v)
+      if (distance[v] == 0) free.push_back(static_cast<int>(v));
+    at.graph.spread(free, distance);
+    std::set<int> released;
+    for (int v : cluster.released)
+      if (const int now = cut.cut.new_vertex[static_cast<std::size_t>(v)]; now >= 0 && distance[static_cast<std::size_t>(now)] > 0)
+        released.insert(now);
+    cluster.local = std::make_shared<const std::vector<Vec3>>(interpolated(cut.old_mesh, cut.cut, *cluster.local));
+    cluster.distance = std::make_shared<const std::vector<int>>(std::move(distance));
+    cluster.released = std::move(released);
+    take_motion(world, at, was, state);
+    let_go(world, at, was, state);
+    put_to_sleep(world, at, state);
+  }
+}
+
 void form_cluster(const World& world, State& state) {
-  const Place at = place_of(world, state.clusters.size());
+  const ClusterPlace at = place_of(world, state.clusters.size());
   state.clusters.push_back(
       form_cluster(world.assembly, at.strip, at.graph, world.setup.memory, world.assembly.x, samples(world), collar(world)));
   Cluster& cluster = state.clusters.back();
   const std::vector<bool> is = members(world.assembly, at.strip, cluster, collar(world));
   weigh(world.assembly, at.strip, is, cluster);
-  BodyState body{.pose = {Mat3::Identity(), cluster.centre}};
-  for (int v = 0; v < at.strip.vertices; ++v) {
-    if (!is[static_cast<std::size_t>(v)]) continue;
-    const auto k = static_cast<std::size_t>(at.strip.first_vertex + v);
-    body.velocity += world.assembly.mass[k] / cluster.mass.mass * state.v[k];
-    body.angular_momentum += world.assembly.mass[k] * (state.x[k] - cluster.centre).cross(state.v[k]);
-  }
-  state.bodies.push_back(body);
+  state.bodies.push_back({.pose = {Mat3::Identity(), cluster.centre}});
+  take_motion(world, at, is, state);
   if (state.clusters.size() == world.graphs.size())
     for (std::size_t k = 0; k < state.clusters.size(); ++k) put_to_sleep(world, place_of(world, k), state);
 }
@@ -98,7 +153,7 @@ void form_cluster(const World& world, State& state) {
 std::vector<TapePart> tape_parts(const World& world, const State& state) {
   std::vector<TapePart> parts(state.x.size(), TapePart::free);
   for (std::size_t k = 0; k < state.clusters.size(); ++k) {
-    const Place at = place_of(world, k);
+    const ClusterPlace at = place_of(world, k);
     const Cluster& cluster = state.clusters[k];
     const std::vector<bool> member = members(world.assembly, at.strip, cluster, collar(world));
     for (std::size_t v = 0; v < member.size(); ++v)
@@ -111,7 +166,7 @@ std::vector<TapePart> tape_parts(const World& world, const State& state) {
 bool advance_fronts(const World& world, const Carriage& carriage, const State& before, State& after) {
   bool moved = false;
   for (std::size_t k = 0; k < after.clusters.size(); ++k) {
-    const Place at = place_of(world, k);
+    const ClusterPlace at = place_of(world, k);
     Cluster& cluster = after.clusters[k];
     const FrontView view{world.assembly, at.strip, after.x, after.bodies[at.body].pose,
                          after.bodies[static_cast<std::size_t>(at.roll.winding->hub)].pose};

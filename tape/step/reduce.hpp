@@ -1,4 +1,5 @@
 #pragma once
+#include "tape/cutting/adhesion.hpp"
 #include "tape/step/world.hpp"
 
 namespace tape {
@@ -12,6 +13,12 @@ SurfaceCarriage surface_carriage(const World& world, const State& state, const C
 /// [strip vertices] what each is part of; tape that is not reduced is free.
 enum class TapePart { free, collar, cluster };
 std::vector<TapePart> tape_parts(const World& world, const State& state);
+/// [strip vertices] m/s; members of clusters move as these do.
+std::vector<Vec3> velocities(const World& world, const State& state);
+/// Gives the clusters the numbers of the world after a cut. Motion of members is taken from their velocities in `state`; what the cut has
+/// made is free tape, and what is nearer to that than the collar leaves its cluster.
+/// @param before  the world before the cut
+void cut_cluster(const World& before, const World& world, std::size_t strip, const CutInWorld& cut, State& state);
 /// Lets tape go where it has passed the fronts of its clusters in a step. What leaves a cluster keeps its motion, and what adhered in it
 /// wakes as it was; momentum and energy of motion stay to round-off.
 /// @param carriage  of both states

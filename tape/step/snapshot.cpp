@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <limits>
@@ -11,6 +12,8 @@ namespace tape {
 namespace {
 constexpr const char* kReals = "reals";
 constexpr const char* kIntegers = "integers";
+constexpr const char* kRemnantReals = "remnant_reals";
+constexpr const char* kRemnantIntegers = "remnant_integers";
 constexpr const char* kHash = "state_hash";
 constexpr const char* kWorld = "world_hash";
 constexpr const char* kSettings = "settings";
@@ -34,6 +37,7 @@ void visit_state(State& s, const Visit& visit) {
     numbers->resize(visit.count(numbers->size()));
     for (Real& r : *numbers) visit(r);
   }
+  for (CutTrigger& t : s.triggers) visit(t.above), visit(t.waiting);
   const auto visit_memory = [&](EffectMemory& memory) {
     for_each_memory(memory, [&](auto& pairs) {
       pairs.resize(visit.count(pairs.size()));
@@ -58,6 +62,43 @@ void visit_state(State& s, const Visit& visit) {
          c.mass,
          std::make_shared<const EffectMemory>(asleep)};
   }
+}
+
+/// What cuts have left of the strips, of which the sizes of all else follow.
+template <class Visit>
+void visit_remnants(Remnants& remnants, const Visit& visit) {
+  for (std::shared_ptr<const StripMesh>& remnant : remnants) {
+    if (visit.count(remnant ? 1 : 0) == 0) continue;
+    StripMesh mesh = remnant ? *remnant : StripMesh{};
+    mesh.rest.resize(visit.count(mesh.rest.size()));
+    for (Vec2& p : mesh.rest) visit(p);
+    mesh.triangles.resize(visit.count(mesh.triangles.size()));
+    for (Index3& t : mesh.triangles)
+      for (int& v : t) visit(v);
+    visit(mesh.rows), visit(mesh.columns);
+    remnant = std::make_shared<const StripMesh>(std::move(mesh));
+  }
+}
+
+/// A state of the sizes that a world asks for.
+State of_size(const World& world) {
+  State state;
+  const auto n = static_cast<std::size_t>(world.assembly.strip_vertices);
+  state.x.resize(n, Vec3::Zero()), state.v.resize(n, Vec3::Zero());
+  state.bodies.resize(world.assembly.bodies.size());
+  for (const Assembly::GripPart& grip : world.assembly.grips) state.grip_base.resize(state.grip_base.size() + grip.vertices.size());
+  state.grip_closed.resize(world.assembly.grips.size());
+  state.triggers.resize(world.setup.scene.blades.size());
+  for (const Strip& strip : world.setup.scene.strips) state.remnants.push_back(strip.remnant);
+  for (const BodyPart& body : world.assembly.bodies) {
+    if (body.cluster_of < 0) continue;
+    const auto vertices = static_cast<std::size_t>(world.assembly.strips[static_cast<std::size_t>(body.cluster_of)].vertices);
+    Cluster cluster;
+    cluster.local = std::make_shared<const std::vector<Vec3>>(vertices, Vec3::Zero());
+    cluster.distance = std::make_shared<const std::vector<int>>(vertices, 0);
+    state.clusters.push_back(cluster);
+  }
+  return state;
 }
 
 struct Write {
@@ -93,6 +134,13 @@ struct Read {
   }
 };
 
+/// Not of a strip: an edge or a corner that is none.
+bool sound(const StripMesh& mesh) {
+  const auto n = static_cast<int>(mesh.rest.size());
+  return std::ranges::all_of(mesh.rest, [](const Vec2& p) { return p.allFinite(); }) &&
+         std::ranges::all_of(mesh.triangles, [&](const Index3& t) { return t.minCoeff() >= 0 && t.maxCoeff() < n; });
+}
+
 /// Of what a state must fit: vertices, triangles, rest shape and owners, and how triangles are cut into samples.
 std::string world_hash(const World& world) {
   State digest;
@@ -125,6 +173,14 @@ void check_memory(const World& world, const MemoryOf<T>& memory) {
   }
 }
 
+/// @throws InputError for what a step could not start from
+void check_state(const World& world, const State& state) {
+  const auto check = [&](const auto&... memory) { (check_memory(world, memory), ...); };
+  std::apply(check, state.memory);
+  for (const Cluster& c : state.clusters) std::apply(check, *c.asleep);
+  check_start(vertex_positions(world, state), world.surface, world.setup.scene.dhat(), pairs_out_of_contact(state.memory));
+}
+
 void write_array(hid_t file, const char* name, hid_t type, const void* data, std::size_t n) {
   const hsize_t size = n;
   const Hdf5Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
@@ -142,12 +198,15 @@ std::vector<T> read_array(hid_t file, const char* name, hid_t type) {
   return values;
 }
 
-void write_file(const std::string& name, const World& world, const State& state, const Flat& flat, const std::string& settings) {
+void write_file(const std::string& name, const World& world, const State& state, const Flat& flat, const Flat& remnants,
+                const std::string& settings) {
   const Hdf5Handle file(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
   if (file < 0) throw InputError("cannot create it");
   const std::string hash = state.hash(), world_id = world_hash(world);
   write_array(file, kReals, H5T_NATIVE_DOUBLE, flat.reals.data(), flat.reals.size());
   write_array(file, kIntegers, H5T_NATIVE_INT64, flat.integers.data(), flat.integers.size());
+  write_array(file, kRemnantReals, H5T_NATIVE_DOUBLE, remnants.reals.data(), remnants.reals.size());
+  write_array(file, kRemnantIntegers, H5T_NATIVE_INT64, remnants.integers.data(), remnants.integers.size());
   write_array(file, kHash, H5T_NATIVE_CHAR, hash.data(), hash.size());
   write_array(file, kWorld, H5T_NATIVE_CHAR, world_id.data(), world_id.size());
   write_array(file, kSettings, H5T_NATIVE_CHAR, settings.data(), settings.size());
@@ -169,11 +228,12 @@ std::string as_text(const std::vector<char>& c) { return {c.begin(), c.end()}; }
 void save_snapshot(const std::string& file, const World& world, const State& state, const std::string& settings) {
   silence_hdf5();
   State copy = state;
-  Flat flat;
+  Flat flat, remnants;
   visit_state(copy, Write{flat});
+  visit_remnants(copy.remnants, Write{remnants});
   const std::string temporary = file + ".tmp";
   try {
-    write_file(temporary, world, state, flat, settings);
+    write_file(temporary, world, state, flat, remnants, settings);
     std::filesystem::rename(temporary, file);
   } catch (const std::exception& e) {
     std::error_code ignored;
@@ -191,25 +251,29 @@ std::string snapshot_settings(const std::string& file) {
   }
 }
 
-State load_snapshot(const std::string& file, const World& world) {
+State load_snapshot(const std::string& file, const World& whole) {
   const auto refuse = [&](const std::string& why) { throw InputError(file + ": not a snapshot of this scene: " + why); };
   const Hdf5Handle h5 = open_snapshot(file);
-  State state = State::start(world);
+  const auto read_flat = [&](const char* reals, const char* integers) {
+    return Flat{read_array<Real>(h5, reals, H5T_NATIVE_DOUBLE), read_array<std::int64_t>(h5, integers, H5T_NATIVE_INT64)};
+  };
+  Remnants remnants(whole.assembly.strips.size());
+  State state;
   try {
+    visit_remnants(remnants, Read{read_flat(kRemnantReals, kRemnantIntegers)});
+    for (const auto& remnant : remnants)
+      if (remnant && !sound(*remnant)) refuse("its strips are no meshes");
+    const World world = whole.with(remnants);
     if (as_text(read_array<char>(h5, kWorld, H5T_NATIVE_CHAR)) != world_hash(world)) refuse("its strips and bodies differ");
-    const Flat flat{read_array<Real>(h5, kReals, H5T_NATIVE_DOUBLE), read_array<std::int64_t>(h5, kIntegers, H5T_NATIVE_INT64)};
-    visit_state(state, Read{flat});
+    state = of_size(world);
+    visit_state(state, Read{read_flat(kReals, kIntegers)});
     if (as_text(read_array<char>(h5, kHash, H5T_NATIVE_CHAR)) != state.hash()) refuse("its contents do not match their hash");
+    if (std::ssize(state.events) != world.setup.scene.events) refuse("its script waits for other events");
+    check_state(world, state);
   } catch (const std::out_of_range&) {
     refuse("its arrays do not fit");
-  }
-  if (std::ssize(state.events) != world.setup.scene.events) refuse("its script waits for other events");
-  try {
-    const auto check = [&](const auto&... memory) { (check_memory(world, memory), ...); };
-    std::apply(check, state.memory);
-    for (const Cluster& c : state.clusters) std::apply(check, *c.asleep);
-    check_start(vertex_positions(world, state), world.surface, world.setup.scene.dhat(), pairs_out_of_contact(state.memory));
   } catch (const InputError& e) {
+    if (std::string_view(e.what()).starts_with(file)) throw;
     refuse(e.what());
   }
   return state;

@@ -69,6 +69,7 @@ struct StepReport {
   std::vector<Vec3> body_force;                   ///< [bodies] N of contact and grips on the body (driven and dynamic)
   std::vector<Pose> body_pose;                    ///< [bodies] X_WB at the end
   std::vector<ArticulationReport> articulations;  ///< [Scene::articulations]
+  std::vector<BladePressure> blades;              ///< [Scene::blades] at the end
   std::optional<Real> exchange_residual;  ///< [1] momentum given to free robots that did not arrive, of what was; none: no such touched
   Real wall_ms = 0;
 };
@@ -80,6 +81,8 @@ class Stepper {
   /// One step of setup.scene.time.dt. On failure (report.ok false) the state is the last good one.
   /// @param exchange  needed where the scene has articulations
   virtual StepReport step(State& state, const Exchange& exchange = {}) = 0;
+  /// After a cut has changed the world and the state: takes both up. @return [J] that is stored now
+  virtual Real renew(const State& state) = 0;
   /// Magnitude [N] of the sum of the barrier's forces on each vertex at the last state, for pictures.
   virtual std::vector<Real> contact_force() const = 0;
 };

@@ -15,6 +15,7 @@
 #include "tape/solver/linear_solver.hpp"
 #include "tape/solver/objective.inl"
 #include "tape/solver/remember.inl"
+#include "tape/step/cut.hpp"
 #include "tape/step/finish.hpp"
 #include "tape/step/reduce.hpp"
 #include "tape/step/stepper.hpp"
@@ -92,9 +93,7 @@ struct Fill {
 /// One step of the solver on one side.
 class SideStepper final : public Stepper {
  public:
-  explicit SideStepper(const World& world)
-      : world_(world), articulations_(world.assembly), apart_(world.surface.apart), linear_(world.setup.linear) {
-    const State state = State::start(world);
+  explicit SideStepper(const World& world) : world_(world), articulations_(world.assembly), linear_(world.setup.linear) {
     std::vector<Real> mu;
     std::vector<Adhesion> adhesion;
     for (int a = 0; a < world.surface.materials; ++a) {
@@ -105,23 +104,20 @@ class SideStepper final : public Stepper {
     }
     mu_.upload(mu);
     adhesion_.upload(adhesion);
-    std::vector<Real> along;
-    for (int v = 0; v < (world.assembly.strips.empty() ? 0 : world.assembly.strips[0].vertices); ++v)
-      along.push_back(world.assembly.rest[static_cast<std::size_t>(v)].x());
-    along_.upload(along);
-    const std::vector<Real>& mass = world.assembly.mass;
-    const auto tape_end = mass.begin() + world.assembly.strip_vertices;
-    moving_mass_ = std::accumulate(mass.begin(), tape_end == mass.begin() ? mass.end() : tape_end, Real{0});
-    const Real dhat = world.setup.scene.dhat();
-    if (world.is_on(Barrier::name)) search_.emplace(world.surface, dhat, world.setup.scene.contact.guard * dhat);
-    std::vector<bool> on;
-    for (const PlanLine& line : world.plan) on.push_back(line.on);
-    objective_.emplace(world.setup.scene, world.setup.effects, world.assembly, on);
-    objective_->for_each([&]<class T>(std::string_view, Term<T>&) {
-      if (Remembers<T>) normals_.emplace(world.surface);
-    });
+    take_world();
+    const State state = State::start(world);
     begin(state, world.setup.scene.time.dt);
     take_up(state);
+  }
+
+  Real renew(const State& state) override {
+    take_world();
+    begin(state, world_.setup.scene.time.dt);
+    prescribe(Drive::at(world_, state, 0));
+    take_up(state);
+    parallel_for(direction_.size(), stepping::Fill{direction_.span()});
+    recall(state.memory);
+    return stored_energy();
   }
 
   StepReport step(State& state, const Exchange& exchange) override {
@@ -154,6 +150,26 @@ class SideStepper final : public Stepper {
   }
 
  private:
+  /// Makes everything that depends on the meshes.
+  void take_world() {
+    const Scene& scene = world_.setup.scene;
+    const Assembly& assembly = world_.assembly;
+    std::vector<Real> along;
+    for (int v = 0; v < (assembly.strips.empty() ? 0 : assembly.strips[0].vertices); ++v)
+      along.push_back(assembly.rest[static_cast<std::size_t>(v)].x());
+    along_.upload(along);
+    const auto tape_end = assembly.mass.begin() + assembly.strip_vertices;
+    moving_mass_ = std::accumulate(assembly.mass.begin(), tape_end == assembly.mass.begin() ? assembly.mass.end() : tape_end, Real{0});
+    apart_ = world_.surface.apart;
+    if (world_.is_on(Barrier::name)) search_.emplace(world_.surface, scene.dhat(), scene.contact.guard * scene.dhat());
+    blades_.emplace(world_);
+    std::vector<bool> on;
+    for (const PlanLine& line : world_.plan) on.push_back(line.on);
+    objective_.emplace(scene, world_.setup.effects, assembly, on);
+    objective_->for_each([&]<class T>(std::string_view, Term<T>&) {
+      if (Remembers<T>) normals_.emplace(world_.surface);
+    });
+  }
   /// Makes everything that depends on what carries the vertices, as it is in a state.
   void take_up(const State& state) {
     carriage_ = carry(world_, state);
@@ -245,9 +261,13 @@ class SideStepper final : public Stepper {
     return link.hold;
   }
 
-  /// Brings the state to this side and finds what is prescribed for its end.
+  void prescribe(const Drive& drive) {
+    body_target_.upload(drive.body_target);
+    grip_target_.upload(drive.grip_target);
+    grip_stiffness_.upload(drive.grip_stiffness);
+  }
+  /// Brings the state to this side and finds what is prescribed for the end of the step.
   void begin(const State& state, Real dt) {
-    const Drive drive = Drive::at(world_, state, dt);
     const std::vector<Vec3> x = vertex_positions(world_, state);
     std::vector<Vec3> x_tilde = x;
     for (std::size_t v = 0; v < state.x.size(); ++v) x_tilde[v] = state.x[v] + dt * state.v[v];
@@ -261,9 +281,7 @@ class SideStepper final : public Stepper {
     start_.q.upload(std::vector<Vec3>(static_cast<std::size_t>(articulations_.q_blocks()), Vec3::Zero()));
     if (!exchange_.articulations.empty()) articulations_.begin(exchange_.articulations, course(dt), dt);
     x_tilde_.upload(x_tilde);
-    body_target_.upload(drive.body_target);
-    grip_target_.upload(drive.grip_target);
-    grip_stiffness_.upload(drive.grip_stiffness);
+    prescribe(Drive::at(world_, state, dt));
     now_.copy_from(start_);
     trial_.copy_from(start_);
   }
@@ -318,6 +336,7 @@ class SideStepper final : public Stepper {
     if (!advance_fronts(world_, carriage_, before, after)) return 0;
     const Real known = stored_energy() + std::exchange(regained_, 0);
     begin(after, dt_);
+    prescribe(Drive::at(world_, after, 0));
     take_up(after);
     recall(after.memory);
     return stored_energy() - known;
@@ -602,6 +621,14 @@ class SideStepper final : public Stepper {
       report.effects.push_back(line);
     });
     if (search_) report.stages = {{"broad_phase", search_ms_}, {"ccd", ccd_ms_}};
+    if (search_ && blades_->any()) {
+      StageReport cutting{"cutting", 0};
+      {
+        const Stopwatch watch(cutting.ms);
+        report.blades = blades_->pressures(pairs_on_host(search_->candidates()), now_.x.download());
+      }
+      report.stages.push_back(cutting);
+    }
     report.stages.insert(report.stages.end(),
                          {{"assembly", assembly_ms_}, {"linear_solver", linear_ms_}, {"line_search", line_search_ms_}});
     if (!world_.graphs.empty()) report.stages.push_back({"front", front_ms_});
@@ -626,6 +653,7 @@ class SideStepper final : public Stepper {
   std::optional<Coordinates> coordinates_;
   std::optional<ContactSearch> search_;   // where things can touch
   std::optional<VertexNormals> normals_;  // where something adheres
+  std::optional<BladeWatch> blades_;
   std::vector<VertexTriangle> replaced_;  // pairs that are out of contact in this step
   Real regained_ = 0;                     // [J] energy of contact that the end of the step let back, beyond that of the candidates
   Articulations articulations_;

@@ -8,6 +8,7 @@
 #include "tape/core/hash.hpp"
 #include "tape/math/rotation.hpp"
 #include "tape/model/motion.hpp"
+#include "tape/step/cut.hpp"
 #include "tape/step/reduce.hpp"
 #include "tape/step/roll_gaps.hpp"
 
@@ -56,15 +57,31 @@ World World::build(Setup setup) {
   require_valid(setup.scene.contact, "contact");
   require_valid(setup.newton, "solver");
   require_valid(setup.linear, "solver");
+  require_valid(setup.cutting, "cutting");
   world.plan = make_plan(setup);
-  world.assembly = assemble(setup.scene);
-  world.surface = make_surface(setup.scene, world.assembly);
   world.setup = std::move(setup);
-  for (const BodyPart& body : world.assembly.bodies)
-    if (body.cluster_of >= 0) world.graphs.emplace_back(world.assembly, world.assembly.strips[static_cast<std::size_t>(body.cluster_of)]);
+  world.lay_out();
+  for (const Blade& blade : world.setup.scene.blades) sharp_vertices(world, blade);
   check_rolls(world.setup.scene, world.assembly, world.surface, world.assembly.x);
   check_start(world.assembly.x, world.surface, world.setup.scene.dhat());
   check_nothing_inside(world.assembly.x, world.surface);
+  return world;
+}
+
+void World::lay_out() {
+  assembly = assemble(setup.scene);
+  surface = make_surface(setup.scene, assembly);
+  graphs.clear();
+  for (const BodyPart& body : assembly.bodies)
+    if (body.cluster_of >= 0) graphs.emplace_back(assembly, assembly.strips[static_cast<std::size_t>(body.cluster_of)]);
+}
+
+World World::with(const Remnants& remnants) const {
+  World world;
+  world.setup = setup;
+  world.plan = plan;
+  for (std::size_t s = 0; s < remnants.size(); ++s) world.setup.scene.strips[s].remnant = remnants[s];
+  world.lay_out();
   return world;
 }
 
@@ -80,6 +97,8 @@ State State::start(const World& world) {
     state.v.insert(state.v.end(), world.assembly.v.begin() + first, world.assembly.v.begin() + last);
   }
   state.memory = world.setup.memory;
+  state.triggers.resize(world.setup.scene.blades.size());
+  state.remnants.resize(world.assembly.strips.size());
   state.events.assign(static_cast<std::size_t>(world.setup.scene.events), std::numeric_limits<Real>::infinity());
   for (const BodyPart& body : world.assembly.bodies) {
     if (body.cluster_of >= 0) {
@@ -112,6 +131,12 @@ std::string State::hash() const {
   hash.add(grip_closed.data(), grip_closed.size() * sizeof(int));
   hash.add(outside.data(), outside.size() * sizeof(Real));
   hash.add(events.data(), events.size() * sizeof(Real));
+  hash.add(triggers.data(), triggers.size() * sizeof(CutTrigger));
+  for (const auto& mesh : remnants) {
+    if (!mesh) continue;
+    hash.add(mesh->rest.data(), mesh->rest.size() * sizeof(Vec2));
+    hash.add(mesh->triangles.data(), mesh->triangles.size() * sizeof(Index3));
+  }
   const auto add_memory = [&](EffectMemory copy) {
     for_each_memory(copy, [&](auto& pairs) {
       for (auto& pair : pairs) pair.visit([&](auto& value) { hash.add(&value, sizeof value); });

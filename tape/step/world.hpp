@@ -7,6 +7,7 @@
 
 #include "tape/bodies/assembly.hpp"
 #include "tape/contact/surface.hpp"
+#include "tape/cutting/params.hpp"
 #include "tape/effects/effects.hpp"
 #include "tape/model/scene.hpp"
 #include "tape/reduction/carriage.hpp"
@@ -21,6 +22,7 @@ struct Setup {
   std::map<std::string, bool> forced;  ///< effects that the scene turns on or off whatever it needs
   NewtonParams newton;
   LinearParams linear;
+  CuttingParams cutting = {};
   EffectMemory memory = {};  ///< what adheres at the start, apart from what else is in the contact band
 };
 
@@ -31,7 +33,10 @@ struct PlanLine {
   std::string why;
 };
 
-/// Constant for a run.
+/// What cuts have left of the strips: [strips], none where a strip is whole.
+using Remnants = std::vector<std::shared_ptr<const StripMesh>>;
+
+/// Constant for a run, from cut to cut.
 struct World {
   Setup setup;
   Assembly assembly;
@@ -41,8 +46,13 @@ struct World {
 
   /// Checks settings and initial state.  @throws InputError saying what is wrong and where
   static World build(Setup setup);
+  /// This world with other remnants of its strips.
+  World with(const Remnants& remnants) const;
   bool is_on(std::string_view effect) const;
   int first_cluster() const { return static_cast<int>(setup.scene.bodies.size()); }  ///< body that is the first cluster
+
+ private:
+  void lay_out();
 };
 
 struct BodyState {
@@ -54,15 +64,17 @@ struct BodyState {
 /// All that the next step needs. Nothing outside it may change a bit of the future.
 struct State {
   int step = 0;
-  Real time = 0;                  ///< [s]
-  std::vector<Vec3> x, v;         ///< [strip vertices] m, m/s
-  std::vector<BodyState> bodies;  ///< [bodies] with the clusters at the end
-  std::vector<Vec3> grip_base;    ///< [springs] m, where the target of each spring was when its grip closed
-  std::vector<int> grip_closed;   ///< [grips] 1 once it has closed
-  std::vector<Real> events;       ///< [Scene::events] s, when each has happened; infinite if it has not
-  EffectMemory memory;            ///< of pairs that adhere, but for those asleep in clusters
-  std::vector<Real> outside;      ///< what whoever simulates the articulations needs to go on: theirs to read
-  std::vector<Cluster> clusters;  ///< of reduced rolls, in the order of the bodies that they are; members keep the x of the last step
+  Real time = 0;                     ///< [s]
+  std::vector<Vec3> x, v;            ///< [strip vertices] m, m/s
+  std::vector<BodyState> bodies;     ///< [bodies] with the clusters at the end
+  std::vector<Vec3> grip_base;       ///< [springs] m, where the target of each spring was when its grip closed
+  std::vector<int> grip_closed;      ///< [grips] 1 once it has closed
+  std::vector<CutTrigger> triggers;  ///< [Scene::blades]
+  Remnants remnants;                 ///< [strips]
+  std::vector<Real> events;          ///< [Scene::events] s, when each has happened; infinite if it has not
+  EffectMemory memory;               ///< of pairs that adhere, but for those asleep in clusters
+  std::vector<Real> outside;         ///< what whoever simulates the articulations needs to go on: theirs to read
+  std::vector<Cluster> clusters;     ///< of reduced rolls, in the order of the bodies that they are; members keep the x of the last step
 
   static State start(const World& world);
   /// 64-bit FNV-1a of all bits above, as 16 hexadecimal digits.

@@ -32,7 +32,20 @@ const StepReport& Simulation::step() {
       return report_;
     }
   if (check_intersections && find_intersections(world_->surface, now).count > 0) note("surfaces intersect");
+  if (report_.ok) cut(report_.blades);
   return report_;
+}
+
+void Simulation::cut(const std::vector<BladePressure>& pressures) {
+  cuts_ = cut_strips(*world_, state_, pressures);
+  for (const CutReport& cut : cuts_)
+    if (cut.refusal.empty()) stepper_->renew(state_);
+}
+
+void Simulation::resume(const std::string& file) {
+  state_ = load_snapshot(file, *world_);
+  *world_ = world_->with(state_.remnants);
+  stepper_->renew(state_);
 }
 
 void Simulation::run_to(Real time, const std::function<void(const Simulation&)>& each) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tape/step/cut.hpp"
 #include "tape/step/stepper.hpp"
 
 namespace tape::test {
@@ -14,12 +15,17 @@ class Simulation {
   explicit Simulation(Setup setup, Backend backend = Backend::cpu);
   /// One step; what it broke is added to `broken`.
   const StepReport& step();
+  /// What follows a step: blades that press cut. @param pressures  [blades]
+  void cut(const std::vector<BladePressure>& pressures);
+  /// Goes on from a snapshot of this scene.
+  void resume(const std::string& file);
   /// Steps until `time` [s]; stops at the first failed step.
   void run_to(Real time, const std::function<void(const Simulation&)>& each = {});
   const World& world() const { return *world_; }
   const State& state() const { return state_; }
   State& state() { return state_; }
   const StepReport& report() const { return report_; }
+  const std::vector<CutReport>& cuts() const { return cuts_; }  ///< made or refused after the last step
   std::vector<Real> contact_force() const { return stepper_->contact_force(); }
   std::vector<Vec3> x() const { return vertex_positions(*world_, state_); }
   /// Mechanical energy [J]: kinetic and all potentials.
@@ -40,6 +46,7 @@ class Simulation {
   State state_;
   std::unique_ptr<Stepper> stepper_;
   StepReport report_;
+  std::vector<CutReport> cuts_;
 };
 
 /// The 19-mm vinyl tape of the paper's Table I.

@@ -48,13 +48,14 @@ class FakeStepper : public Stepper {
     }
     return report;
   }
+  Real renew(const State&) override { return 0; }
   std::vector<Real> contact_force() const override { return {}; }
 
  private:
   std::function<void(State&, StepReport&)> act_;
 };
 
-RunLog run(const World& world, const std::function<void(State&, StepReport&)>& act, const RunOptions& options = {}) {
+RunLog run(World world, const std::function<void(State&, StepReport&)>& act, const RunOptions& options = {}) {
   FakeStepper stepper(act);
   State state = State::start(world);
   return simulate(world, stepper, state, options);
