@@ -66,6 +66,8 @@ RunSummary summarize(const World& world, const RunLog& log, const std::vector<st
   if (!log.rows.empty() && log.rows.back().energy.scale > 0) s.energy_drift = log.rows.back().energy.balance / log.rows.back().energy.scale;
   s.state_hash = log.end.hash();
   s.conditions = check_conditions(world, log);
+  const bool missed = std::ranges::any_of(s.conditions, [](const Condition& c) { return c.stated && !c.met; });
+  s.fell_short = missed && log.end.step >= planned_steps(world.setup.scene);
   s.figures = measure_figures(figures, world, log);
   return s;
 }

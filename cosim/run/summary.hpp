@@ -39,6 +39,7 @@ struct RunSummary {
   std::vector<EffectSummary> effects;
   std::vector<StageReport> stages;  ///< mean over the steps
   std::vector<Condition> conditions;
+  bool fell_short = false;  ///< came to the end of the scene without meeting what that states
   FigureValues figures;
 };
 /// @param figures  names that the scene asks for
