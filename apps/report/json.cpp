@@ -46,6 +46,7 @@ Json robot_json(const cosim::RobotPart& part, const Scene& scene) {
   const Eigen::AngleAxisd turn(part.params.X_WB.linear());
   json["position"] = numbers(position), json["rotation_vector"] = numbers(Vec3(turn.angle() * turn.axis()));
   json["start"] = numbers(part.start), json["velocity"] = numbers(part.velocity);
+  if (part.target.size() > 0) json["target"] = numbers(part.target);
   json["friction"] = part.params.friction, json["xi"] = part.xi;
   json["material"] = scene.materials[static_cast<std::size_t>(part.material)].name;
   for (std::size_t k = 0; k < part.params.drives.size(); ++k) {

@@ -7,7 +7,7 @@
 /// The subcommands of tapesim, one file each. `add_...` declares its options; what it is to do is left in `chosen`, which returns the exit
 /// code and is called once the whole command line is known to be right.
 namespace tape::tapesim {
-constexpr int kDone = 0, kNumericalFailure = 1, kBadInput = 2, kInterrupted = 130;
+constexpr int kDone = 0, kFailed = 1, kBadInput = 2, kInterrupted = 130;
 
 using Action = std::function<int()>;
 void add_run(CLI::App& app, Action& chosen);

@@ -44,7 +44,7 @@ int act(const Action& chosen) {
     return kBadInput;
   } catch (const NumericalError& e) {
     say("", e);
-    return kNumericalFailure;
+    return kFailed;
   } catch (const Interrupted& e) {
     say("", e);
     return kInterrupted;
@@ -53,7 +53,7 @@ int act(const Action& chosen) {
     return kBadInput;
   } catch (const std::exception& e) {
     say("internal error, please report it: ", e);
-    return kNumericalFailure;
+    return kFailed;
   }
 }
 }  // namespace

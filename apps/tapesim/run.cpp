@@ -41,7 +41,8 @@ cosim::RunLog simulate(const RunArguments& arguments, LoadedWorld& loaded, Stepp
   const int first = state.step;
   const int planned = cosim::planned_steps(world.setup.scene) - first;
   Progress progress("run", arguments.steps < 0 ? planned : std::min(planned, arguments.steps));
-  cosim::RunOptions options{.max_steps = arguments.steps, .record = loaded.input.run.record, .events = loaded.input.run.events};
+  cosim::RunOptions options{
+      .max_steps = arguments.steps, .record = loaded.input.run.record, .events = loaded.input.run.events, .goals = loaded.input.run.goals};
   options.stop_asked = interrupted;
   options.on_step = [&](const State& now, const cosim::StepRow& row) {
     folder.add_step(row);
@@ -129,7 +130,7 @@ int run(const RunArguments& arguments) {
   print_summary(summary, folder);
   if (log.interrupted) print_how_to_resume(arguments, state, folder);
   const bool filmed = log.interrupted || !arguments.video || make_video(loaded, folder);
-  return !log.failure.empty() ? kNumericalFailure : log.interrupted || !filmed ? kInterrupted : kDone;
+  return !log.failure.empty() || summary.fell_short ? kFailed : log.interrupted || !filmed ? kInterrupted : kDone;
 }
 }  // namespace
 

@@ -48,7 +48,7 @@ StudyRun run_one(const Study& study, const std::vector<std::string>& values, con
   const std::string key = key_of(study, values, loaded, state);
   if (store.find(key, result)) return result;
   const std::unique_ptr<Stepper> stepper = cosim::make_stepper(Backend::cpu, loaded.world, loaded.input.run.robots);
-  cosim::RunOptions options{.record = loaded.input.run.record, .events = loaded.input.run.events};
+  cosim::RunOptions options{.record = loaded.input.run.record, .events = loaded.input.run.events, .goals = loaded.input.run.goals};
   options.stop_asked = interrupted;
   const cosim::RunLog log = simulate(loaded.world, *stepper, state, options);
   const cosim::RunSummary summary = summarize(loaded.world, log, {});
@@ -216,7 +216,7 @@ int run_study(const std::string& file, const std::vector<std::string>& overrides
   fmt::print("{}\n", write_files(study, runs, folder));
   if (interrupted()) return kInterrupted;
   for (const StudyRun& run : runs)
-    if (!run.measurable()) return kNumericalFailure;
+    if (!run.measurable()) return kFailed;
   return kDone;
 }
 

@@ -187,8 +187,8 @@ std::vector<RobotRecord> CoupledStepper::records() const {
     const RobotPart& robot = robots_.robots[static_cast<std::size_t>(r)];
     const RobotState state = bullet_.state(r);
     const auto links = robot.model->links.size();
-    RobotRecord record{state.q, state.v.tail(state.q.size()), robot.start, bullet_.drive_effort(r), {}};
-    if (!scripts_.empty()) record.command = scripts_[static_cast<std::size_t>(r)].told_at(time_);
+    const robot::VecX told = scripts_.empty() ? RobotScript(robot, {}).told_at(0) : scripts_[static_cast<std::size_t>(r)].told_at(time_);
+    RobotRecord record{state.q, state.v.tail(state.q.size()), told, bullet_.drive_effort(r), {}};
     for (std::size_t l = 0; l < links; ++l) record.links.push_back(bullet_.link_pose(r, static_cast<int>(l)));
     record.wrench.assign(links, Eigen::Matrix<double, 6, 1>::Zero());
     records.push_back(std::move(record));
@@ -198,6 +198,12 @@ std::vector<RobotRecord> CoupledStepper::records() const {
       records[static_cast<std::size_t>(parts_[a].robot)].wrench[static_cast<std::size_t>(parts_[a].links[l])] =
           wrench_of(exerted_[a].links[l]);
   return records;
+}
+
+JointPositions CoupledStepper::joints() const {
+  JointPositions q;
+  for (int r = 0; r < bullet_.robots(); ++r) q.push_back(bullet_.state(r).q);
+  return q;
 }
 
 void CoupledStepper::restore(const tape::State& state) {

@@ -26,6 +26,9 @@ struct RobotRecord {
       {};  ///< [nl] N, N m: of the tape side on the link, about its origin, mean over the step
 };
 
+/// Of all robots: [robots][nj] rad or m.
+using JointPositions = std::vector<robot::VecX>;
+
 /// Unknowns of a robot in the exchange: independent joint motions, six more for a free base, and one that goes from 0 to 1 over a step
 /// and closes what the first leave open between the two worlds.
 int coordinates(const robot::World& world, int robot);
@@ -43,6 +46,7 @@ class CoupledStepper final : public tape::Stepper {
   const robot::World& bullet() const { return bullet_; }
   const ExchangeReport& exchange() const { return report_; }
   std::vector<RobotRecord> records() const;  ///< [robots]
+  JointPositions joints() const;
 
  private:
   /// A robot on the tape side.

@@ -13,8 +13,7 @@ using tape::Real;
 using tape::Vec3;
 using Box = Eigen::AlignedBox<double, 3>;
 
-constexpr Real kNear = 2e-3;       // [m] from tape
-constexpr Real kClearance = 2e-5;  // [m] beyond the half-thicknesses, at which a pair may go over to the tape solver
+constexpr Real kNear = 2e-3;  // [m] from tape
 
 using Corners = std::array<Vec3, 3>;
 struct Placed {
@@ -106,9 +105,11 @@ std::vector<int> Pinching::tape_near(const Link& link, const Pose& pose, const r
   return near;
 }
 
+/// Whether the barrier does not act between two links. A pair that went over nearer would be thrown apart by a barrier that nothing had
+/// pressed, and held by friction that goes by it.
 bool Pinching::apart(const Link& a, const Pose& X_a, const Link& b, const Pose& X_b) const {
   const auto& bodies = world_.setup.scene.bodies;
-  const Real least = kClearance + bodies[static_cast<std::size_t>(a.body)].xi + bodies[static_cast<std::size_t>(b.body)].xi;
+  const Real least = world_.setup.scene.dhat() + bodies[static_cast<std::size_t>(a.body)].xi + bodies[static_cast<std::size_t>(b.body)].xi;
   const Vec3 margin = Vec3::Constant(least);
   const std::vector<Placed> of_b = triangles_near(b.mesh, inverse_times(X_a, X_b), {a.box.min() - margin, a.box.max() + margin});
   Box around;

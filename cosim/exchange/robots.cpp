@@ -25,9 +25,10 @@ RobotScript::RobotScript(const RobotPart& robot, const std::vector<double>& even
 
 std::vector<robot::JointCommand> RobotScript::commands_at(double time) const {
   std::vector<robot::JointCommand> commands;
-  for (Eigen::Index k = 0; k < robot_->start.size(); ++k)
+  const robot::VecX& target = robot_->target.size() > 0 ? robot_->target : robot_->start;
+  for (Eigen::Index k = 0; k < target.size(); ++k)
     commands.push_back(
-        {robot::JointCommand::Kind::position, robot_->start[k], 0, robot_->push.empty() ? 0 : robot_->push[static_cast<std::size_t>(k)]});
+        {robot::JointCommand::Kind::position, target[k], 0, robot_->push.empty() ? 0 : robot_->push[static_cast<std::size_t>(k)]});
   for (const Motion& motion : motions_) {
     if (time < motion.way.start()) continue;
     const robot::JointTrajectory::Point at = motion.way.at(std::min(time, motion.until));

@@ -44,6 +44,7 @@ struct RobotPart {
   robot::RobotParams params = {};
   robot::VecX start = {};                      ///< [nj] joint positions
   std::vector<RobotMotion> motions = {};       ///< in the order in which they start; of two that move a joint, the later one does
+  robot::VecX target = {};                     ///< [nj] that the drives are told until a motion says otherwise, or empty: the start
   robot::Vec3 velocity = robot::Vec3::Zero();  ///< [m/s] of a free base at the start
   std::vector<double> push = {};               ///< [nj] N m or N that the drives exert beside what they hold, or empty
   int material = 0;                            ///< of all its links, index into tape::Scene::materials
@@ -61,7 +62,7 @@ class RobotScript {
  public:
   /// @param events  [s] when each has happened (tape::Moment); motions after those that have not are left out
   RobotScript(const RobotPart& robot, const std::vector<double>& events);
-  /// [nj] positions and velocities of the motions, the start where none has begun.
+  /// [nj] positions and velocities of the motions, the robot's target where none has begun.
   std::vector<robot::JointCommand> commands_at(double time) const;
   /// [nj] positions of these.
   robot::VecX told_at(double time) const;

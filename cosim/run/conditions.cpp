@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "cosim/run/measure.hpp"
 #include "tape/effects/barrier_law.hpp"
 #include "tape/model/strip_mesh.hpp"
 
@@ -75,6 +76,22 @@ void add_waits(const World& world, const RunLog& log, std::vector<Condition>& co
     if (std::isfinite(took)) conditions.push_back({to_text(event), took, "before", took < event.timeout - world.setup.scene.time.dt / 2});
   }
 }
+/// What the scene states: the worst value of the time in which it must be true, that of the last step at least.
+void add_goals(const RunLog& log, std::vector<Condition>& conditions) {
+  for (std::size_t k = 0; k < log.goals.size(); ++k) {
+    const Goal& goal = log.goals[k];
+    Real worst = std::numeric_limits<Real>::quiet_NaN();
+    for (const StepRow& row : log.rows) {
+      const bool last = &row == &log.rows.back();
+      if (!last && row.time < log.rows.back().time - goal.held - 1e-6 * row.report.dt) continue;
+      const Real value = row.goals[k];
+      if (std::isnan(worst) || (goal.claim.above ? value < worst : value > worst)) worst = value;
+    }
+    std::string required = (goal.claim.above ? "> " : "< ") + short_text(goal.claim.level);
+    if (goal.held > 0) required += " for the last " + short_text(goal.held) + " s";
+    conditions.push_back({goal.name, worst, required, holds(goal.claim, worst), true});
+  }
+}
 }  // namespace
 
 Real energy_rise(const RunLog& log) {
@@ -104,6 +121,7 @@ std::vector<Condition> check_conditions(const World& world, const RunLog& log) {
   };
   add_peel_conditions(world, conditions);
   add_waits(world, log, conditions);
+  add_goals(log, conditions);
   return conditions;
 }
 }  // namespace cosim

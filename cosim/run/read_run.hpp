@@ -5,6 +5,7 @@
 
 #include "cosim/exchange/robots.hpp"
 #include "cosim/run/run_log.hpp"
+#include "cosim/scene/goal.hpp"
 #include "cosim/scene/scene_file.hpp"
 
 namespace cosim {
@@ -14,6 +15,7 @@ struct RunInput {
   Setup setup;
   RobotScene robots;
   std::vector<Event> events;  ///< that the script waits for
+  std::vector<Goal> goals;    ///< conditions that the scene states
   RecordParams record;
   std::vector<std::string> figures;
   bool settle_roll = true;           ///< off: a roll starts as it is wound

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cosim/run/event_watch.hpp"
+#include "cosim/run/measure.hpp"
 #include "tape/contact/intersection.hpp"
 #include "tape/core/stopwatch.hpp"
 
@@ -57,7 +58,8 @@ RunLog simulate(World& world, Stepper& stepper, State& state, const RunOptions& 
   const auto begin = std::chrono::steady_clock::now();
   const int planned = planned_steps(world.setup.scene);
   const int last = options.max_steps < 0 || options.max_steps > planned - state.step ? planned : state.step + options.max_steps;
-  RunLog log{.start = state, .events = options.events};
+  RunLog log{.start = state, .events = options.events, .goals = options.goals};
+  const auto* coupled = dynamic_cast<const CoupledStepper*>(&stepper);  // none where there are no robots
   EnergyLedger ledger(world);
   RecordClock clock(options.record.rate, state.time);
   record(log, world, state, options);
@@ -74,9 +76,12 @@ RunLog simulate(World& world, Stepper& stepper, State& state, const RunOptions& 
       log.failed_step = state.step + 1;
       break;
     }
-    note_events(options.events, world, report, state);
+    const JointPositions joints = coupled ? coupled->joints() : JointPositions{};
+    note_events(options.events, world, report, joints, state);
     const EnergyLedger::Entry energy = ledger.after(state, report);
-    log.rows.push_back({state.step, state.time, std::move(report), energy});
+    std::vector<Real> goals;
+    for (const Goal& goal : options.goals) goals.push_back(measure(goal.claim, world, state, report, joints));
+    log.rows.push_back({state.step, state.time, std::move(report), energy, std::move(goals)});
     if (cut(world, stepper, state, ledger, log.rows.back()) && options.on_cut) options.on_cut();
     if (options.on_step) options.on_step(state, log.rows.back());
     if (clock.due(state.time)) {

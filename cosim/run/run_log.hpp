@@ -5,6 +5,7 @@
 
 #include "cosim/run/energy_ledger.hpp"
 #include "cosim/scene/event.hpp"
+#include "cosim/scene/goal.hpp"
 #include "tape/step/cut.hpp"
 #include "tape/step/stepper.hpp"
 
@@ -15,6 +16,7 @@ struct StepRow {
   Real time = 0;  ///< [s] at its end
   StepReport report;
   EnergyLedger::Entry energy;
+  std::vector<Real> goals = {};      ///< [goals] what their claims are about, at its end
   std::vector<CutReport> cuts = {};  ///< made or refused after the step
 };
 
@@ -23,6 +25,7 @@ struct RunLog {
   State start{}, end{};
   std::vector<StepRow> rows{};  ///< of the completed steps
   std::vector<Event> events{};  ///< that the script waits for; State::events says when they happened
+  std::vector<Goal> goals{};    ///< conditions that the scene states
   bool interrupted = false;
   std::string failure{};   ///< why the run stopped before its time; empty if it did not
   int failed_step = -1;    ///< the step that could not be made
@@ -44,6 +47,7 @@ struct RunOptions {
   int max_steps = -1;  ///< of this call; negative: until the duration of the scene
   RecordParams record{};
   std::vector<Event> events{};                                  ///< that the script waits for
+  std::vector<Goal> goals{};                                    ///< conditions that the scene states
   std::function<bool()> stop_asked{};                           ///< asked before each step; may be empty
   std::function<void(const State&, const StepRow&)> on_step{};  ///< after each completed step; may be empty
   std::function<void()> on_cut{};                               ///< when a strip was cut: the world has changed; may be empty

@@ -68,6 +68,8 @@ RunSummary summarize(const World& world, const RunLog& log, const std::vector<st
   for (const StepRow& row : log.rows)
     for (const CutReport& cut : row.cuts) s.cuts.emplace_back(row.time, cut);
   s.conditions = check_conditions(world, log);
+  const bool missed = std::ranges::any_of(s.conditions, [](const Condition& c) { return c.stated && !c.met; });
+  s.fell_short = missed && log.end.step >= planned_steps(world.setup.scene);
   s.figures = measure_figures(figures, world, log);
   return s;
 }

@@ -40,6 +40,7 @@ struct RunSummary {
   std::vector<StageReport> stages;               ///< mean over the steps
   std::vector<std::pair<Real, CutReport>> cuts;  ///< [s] when, and what
   std::vector<Condition> conditions;
+  bool fell_short = false;  ///< came to the end of the scene without meeting what that states
   FigureValues figures;
 };
 /// @param figures  names that the scene asks for

@@ -1,6 +1,7 @@
 #pragma once
 #include "cosim/exchange/robots.hpp"
 #include "cosim/scene/event.hpp"
+#include "cosim/scene/goal.hpp"
 #include "cosim/scene/scene_file.hpp"
 #include "tape/model/scene.hpp"
 
@@ -9,9 +10,10 @@ struct BothWorlds {
   tape::Scene tape;
   RobotScene robots;          ///< whose links are bodies of the other
   std::vector<Event> events;  ///< that the script waits for
+  std::vector<Goal> goals;    ///< conditions that it states
 };
 /// Everything of a scene file that these hold: scene, film, time, contact, gravity, seed, strip or strips, roll, bodies, robots, physics,
-/// exchange, materials, interfaces, axles, script. README.md describes them.
+/// exchange, materials, interfaces, axles, script, conditions. README.md describes them.
 /// @throws InputError "file:line: key = value: reason"
 BothWorlds read_worlds(const SceneFile& file);
 

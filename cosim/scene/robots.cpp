@@ -90,6 +90,7 @@ void read_drives(const Reader& drives, RobotPart& part) {
   const robot::VecX kd = per_joint(drives["kd"], *part.model, none, Range::non_negative(), "N m s/rad or N s/m");
   const robot::VecX effort = per_joint(drives["effort"], *part.model, unlimited, Range::positive(), "N m or N");
   for (Eigen::Index k = 0; k < kp.size(); ++k) part.params.drives.push_back({kp[k], kd[k], effort[k]});
+  if (const Reader target = drives["target"]) part.target = per_joint(target, *part.model, part.start, kPlace, "rad or m");
 }
 
 RobotPart read_robot(const Reader& section, const std::string& name, const SceneFile& file) {
@@ -110,7 +111,6 @@ RobotPart read_robot(const Reader& section, const std::string& name, const Scene
   part.params.friction = section["friction"].number_or(0.5, Range::non_negative(), "");
   part.velocity = section["velocity"].vector_or(part.velocity, kPlace, "m/s");
   part.xi = section["xi"].number_or(0, Range::closed(0, 0.01), "m");
-  read_drives(section["drives"], part);
   const robot::JointMap map = at_place(section, [&] { return joint_map(*part.model); });
   const robot::VecX wanted =
       per_joint(section["joints"], *part.model, posed(section["postures"], file.path(), *part.model), kPlace, "rad or m");
@@ -121,6 +121,7 @@ RobotPart read_robot(const Reader& section, const std::string& name, const Scene
       section["joints"].fail(part.model->joints[static_cast<std::size_t>(k)].name + " = " + tape::to_text(wanted[k]) +
                              " (allowed: " + tape::to_text(map.lower[u]) + " to " + tape::to_text(map.upper[u]) + ")");
   }
+  read_drives(section["drives"], part);
   return part;
 }
 

@@ -54,26 +54,7 @@ class Compiler {
 
   /// @return its index
   int event(const Reader& what, const Moment& start, Real timeout) {
-    Event event{.things = {}, .start = start, .timeout = timeout};
-    const auto names = enum_names(Quantity{});
-    std::size_t q = 0;
-    while (q < names.size() && !what[std::string(names[q])]) ++q;
-    if (q == names.size()) what.fail("must hold one of force, height, speed, distance");
-    event.quantity = static_cast<Quantity>(q);
-    const Reader things = what[std::string(names[q])];
-    event.things = things.is_list() ? things.texts() : std::vector<std::string>{things.text()};
-    if (event.things.size() != (event.quantity == Quantity::distance ? 2 : 1))
-      things.fail("a distance is that of two things, the rest of one");
-    try {
-      require_things(event, scene_);
-    } catch (const tape::InputError& e) {
-      things.fail(e.what());
-    }
-    const Reader above = what["above"], below = what["below"];
-    if (above.exists() == below.exists()) what.fail("needs either above or below");
-    event.above = above.exists();
-    event.level = (above ? above : below).number(Range::any(), unit_names(Quantity{})[q]);
-    events_.push_back(std::move(event));
+    events_.push_back({read_claim(what, scene_, robots_), start, timeout});
     return static_cast<int>(events_.size()) - 1;
   }
   /// After an entry that takes `duration` [s], or stops before if it says until when.

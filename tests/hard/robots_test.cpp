@@ -31,14 +31,14 @@ std::string run(const RobotCase& hard, const cosim::RunInput& input) {
   tape::State state = tape::State::start(world);
   for (int k = 1; k <= hard.steps; ++k) {
     const tape::StepReport report = stepper->step(state);
-    note_events(input.events, world, report, state);
+    const auto* coupled = dynamic_cast<const cosim::CoupledStepper*>(stepper.get());
+    note_events(input.events, world, report, coupled->joints(), state);
     if (!report.ok) {
       ADD_FAILURE() << "step " << k << ": " << report.failure;
       break;
     }
     EXPECT_GT(report.min_gap, 0) << k;
     EXPECT_EQ(tape::find_intersections(world.surface, vertex_positions(world, state)).count, 0) << k;
-    const auto* coupled = dynamic_cast<const cosim::CoupledStepper*>(stepper.get());
     EXPECT_LT(coupled->exchange().mismatch, hard.way) << k << ": the worlds part";
     if (testing::Test::HasFailure()) break;
   }

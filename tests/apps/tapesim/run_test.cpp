@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "cosim/run/state_file.hpp"
@@ -55,6 +56,27 @@ TEST_F(Run, LeavesItsFourFilesAndNoOther) {
   const Outcome outcome = run("a");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(folder.names("a"), ElementsAre("report.json", "snapshot.h5", "state.h5", "steps.csv"));
+}
+TEST_F(Run, FailsByNameWhereTheSceneStatesAConditionThatItDoesNotMeet) {
+  const std::string stated = std::string(kScene) +
+                             "conditions: [{name: tip_low, height: tape.tip, below: 0.1}, "
+                             "{name: tip_high, height: tape.tip, above: 1, held: 0.05}]\n";
+  scene = folder.file("stated.yaml", stated);
+  const Outcome outcome = run("a");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.out, HasSubstr("condition not met: tip_high"));
+  EXPECT_THAT(outcome.out, Not(HasSubstr("tip_low")));
+  std::map<std::string, json> conditions;
+  for (const json& c : report("a")["conditions"]) conditions[c["name"]] = c;
+  EXPECT_EQ(conditions.at("tip_low")["met"], true);
+  EXPECT_LT(conditions.at("tip_low")["value"], 0.004);
+  EXPECT_EQ(conditions.at("tip_high")["met"], false);
+  EXPECT_EQ(conditions.at("tip_high")["required"], "> 1 for the last 0.05 s");
+  EXPECT_EQ(run("b", {"--steps", "4"}).exit_code, 0) << "not at its end";
+  EXPECT_EQ(run("c", {"--set", "conditions.1.above=-1"}).exit_code, 0);
+  const Outcome refused = tapesim({"check", scene, "--set", "conditions.0.height=tip"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("conditions.0.height = tip"));
 }
 TEST_F(Run, ReportHasAllKeysThatScriptsRelyOn) {
   ASSERT_EQ(run("a", {"--steps", "3"}).exit_code, 0);

@@ -187,3 +187,19 @@ TEST(Exchange, PadsPinchAStripWithTheirDrivesForceAndLetGo) {
   EXPECT_GT(pinching, 20) << "steps in which the pads touch on the tape side";
   EXPECT_EQ(both.link(0, 0).normal.force.norm() + both.link(0, 1).normal.force.norm(), 0);
 }
+/// A block over a plate, so near that they touch in Bullet, and a strip within 2 mm of both, which touches neither.
+TEST(Exchange, APairGoesOverToTheTapeSolverOnlyWhereTheBarrierDoesNotActYet) {
+  const Real dhat = tape::test::vinyl().dhat;
+  for (const Real gap : {0.3 * dhat, 0.9 * dhat, 1.1 * dhat}) {
+    RobotModel block{.name = "block"}, plate{.name = "plate"};
+    block.links = {box_link("block", 0.02, Vec3::Constant(0.012))};
+    plate.links = {box_link("plate", 1, Vec3(0.1, 0.08, 0.02))};
+    RobotScene scene;
+    scene.world.gravity.setZero();
+    scene.robots = {part("plate", plate, Vec3(0, 0, -0.0115)), part("block", block, Vec3(0, 0.0165, -0.0015 + 0.006 + gap), false)};
+    Coupled both(free_strip(0.01, 1e-4), scene);
+    ASSERT_TRUE(both.step()) << both.report.failure;
+    EXPECT_EQ(both.stepper->exchange().pinching, gap > dhat ? 1 : 0) << gap;
+    EXPECT_EQ(both.link(0, 0).normal.force.norm(), 0) << gap << ": nothing presses them together";
+  }
+}

@@ -23,13 +23,14 @@ struct Falling {
     return cosim::simulate(world, *stepper, state, {.max_steps = steps, .events = std::move(events)});
   }
 };
-const Event kLow{.quantity = Quantity::height, .things = {"tape.tip"}, .above = false, .level = 0.8, .start = 0, .timeout = 1};
+const Event kLow{.claim = {.quantity = Quantity::height, .things = {"tape.tip"}, .above = false, .level = 0.8}, .start = 0, .timeout = 1};
 }  // namespace
 
 /// Implicit Euler falls by g dt^2 n (n + 1)/2: 0.2 m lie behind it after step 20 (20.6 cm), not after step 19 (18.6 cm).
 TEST(EventWatch, NotesTheStepThatBringsItAbout) {
   Falling strip;
-  const Event after{.quantity = Quantity::speed, .things = {"tape"}, .above = true, .level = 100, .start = {0.1, 0}, .timeout = 0.05};
+  const Event after{
+      .claim = {.quantity = Quantity::speed, .things = {"tape"}, .above = true, .level = 100}, .start = {0.1, 0}, .timeout = 0.05};
   const cosim::RunLog log = strip.run({kLow, after});
   EXPECT_NEAR(strip.state.events[0], 0.20, 1e-12);
   EXPECT_NEAR(strip.state.events[1], 0.35, 1e-12) << "0.1 s after the first it starts, 0.05 s later its time is over";

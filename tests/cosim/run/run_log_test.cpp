@@ -185,3 +185,49 @@ TEST(MiddleLine, RunsFromRootToTipInEqualParts) {
   const std::vector<Vec3> line = middle_line(world, State::start(world), 5);
   for (int i = 0; i < 5; ++i) EXPECT_LT((line[static_cast<std::size_t>(i)] - Vec3(0.038 * i / 4, 0, 0)).norm(), 1e-15) << i;
 }
+/// The strip's speed is 1, 2, ... m/s at the ends of the steps.
+TEST(Goals, AreJudgedByTheWorstOfTheTimeInWhichTheyMustHold) {
+  const World world = strip_world();
+  const auto faster = [](State& state, StepReport&) { state.v.assign(state.v.size(), Vec3(state.step + 1, 0, 0)); };
+  const auto goal = [](bool above, Real level, Real held) {
+    return Goal{.name = "speed", .claim = {.quantity = Quantity::speed, .things = {"tape"}, .above = above, .level = level}, .held = held};
+  };
+  const struct {
+    Goal goal;
+    Real value;
+    bool met;
+    const char* required;
+  } cases[] = {
+      {goal(true, 9.5, 0), 10, true, "> 9.5"},
+      {goal(true, 10, 0), 10, false, "> 10"},
+      {goal(true, 6.5, 0.03), 7, true, "> 6.5 for the last 0.03 s"},  // 0.07, 0.08, 0.09 and 0.1 s
+      {goal(true, 7, 0.03), 7, false, "> 7 for the last 0.03 s"},
+      {goal(false, 10.5, 0.05), 10, true, "< 10.5 for the last 0.05 s"},
+      {goal(false, 9.5, 0), 10, false, "< 9.5"},
+  };
+  for (const auto& c : cases) {
+    const RunLog log = run(world, faster, {.goals = {c.goal}});
+    const RunSummary summary = summarize(world, log, {});
+    const Condition& judged = condition(summary.conditions, "speed");
+    EXPECT_TRUE(judged.stated);
+    EXPECT_EQ(judged.value, c.value) << c.required;
+    EXPECT_EQ(judged.met, c.met) << c.required;
+    EXPECT_EQ(judged.required, c.required);
+    EXPECT_EQ(summary.fell_short, !c.met) << c.required;
+    EXPECT_EQ(summary.status, "done");
+  }
+}
+TEST(Goals, FailARunOnlyAtItsEndAndTheConditionsOfTrustDoNot) {
+  const World world = strip_world();
+  const Goal fast{.name = "fast", .claim = {.quantity = Quantity::speed, .things = {"tape"}, .above = true, .level = 1}};
+  const auto rest = [](State&, StepReport& report) { report.substeps = 2; };
+  const RunSummary early = summarize(world, run(world, rest, {.max_steps = 4, .goals = {fast}}), {});
+  EXPECT_FALSE(condition(early.conditions, "fast").met);
+  EXPECT_FALSE(early.fell_short) << "it may come yet";
+  EXPECT_TRUE(summarize(world, run(world, rest, {.goals = {fast}}), {}).fell_short);
+  const RunSummary without = summarize(world, run(world, rest), {});
+  EXPECT_FALSE(condition(without.conditions, "retried_steps").met);
+  EXPECT_FALSE(without.fell_short);
+  EXPECT_FALSE(condition(summarize(world, run(world, rest, {.max_steps = 0, .goals = {fast}}), {}).conditions, "fast").met)
+      << "nothing was seen";
+}

@@ -81,6 +81,20 @@ TEST(Script, JointsMayBeNamedByAPattern) {
   EXPECT_EQ(arm.params.drives[1].kp, 100);
   EXPECT_NE(refusal(kArm + "script: [{robot: arm, joints: {arm_jont1: 1}, duration: 1}]").find("arm_joint1"), std::string::npos);
 }
+/// As a crease: a spring to upright, however the flap starts.
+TEST(Script, DrivesHoldTheirTargetUntilAMotionSaysOtherwise) {
+  const RobotPart carton =
+      read(
+          "film: vinyl_19mm\nstrip: {length: 0.1, position: [5, 0, 0]}\nrobots: {carton: {urdf: carton.urdf, joints: {hinge_left: 1, "
+          "hinge_right: 0.5}, drives: {kp: 1, target: {hinge_left: 0.2}}}}\n"
+          "script: [{wait: 1}, {robot: carton, joints: {hinge_left: 0.6}, duration: 1}]")
+          .robots.robots[0];
+  const RobotScript script(carton, {});
+  EXPECT_EQ(joint(carton, carton.start, "hinge_left"), 1);
+  EXPECT_EQ(joint(carton, script.told_at(0.5), "hinge_left"), 0.2);
+  EXPECT_NEAR(joint(carton, script.told_at(1.5), "hinge_left"), 0.4, 1e-12) << "half way from the target, not from the start";
+  EXPECT_EQ(joint(carton, script.told_at(0.5), "hinge_right"), 0.5) << "unset: where it starts";
+}
 TEST(Script, AHandStartsInAPostureAndGoesToAnother) {
   const BothWorlds both = read(kArm + "script: [{robot: hand, posture: open, prefix: right_, duration: 0.4}]");
   const RobotPart& hand = both.robots.robots[1];
