@@ -10,6 +10,7 @@
 #include "robot/control/trajectory_file.hpp"
 #include "robot/kinematics/forward_kinematics.hpp"
 #include "robot/kinematics/joint_map.hpp"
+#include "robot/model/weld.hpp"
 #include "robot/urdf/read_urdf.hpp"
 
 namespace cosim {
@@ -93,7 +94,7 @@ void read_drives(const Reader& drives, RobotPart& part) {
   if (const Reader target = drives["target"]) part.target = per_joint(target, *part.model, part.start, kPlace, "rad or m");
 }
 
-RobotPart read_robot(const Reader& section, const std::string& name, const SceneFile& file) {
+robot::RobotModel load_robot(const Reader& section, const SceneFile& file) {
   const Reader urdf = section["urdf"];
   std::filesystem::path found;
   for (const char* folder : {"robots", "props"})
@@ -102,10 +103,27 @@ RobotPart read_robot(const Reader& section, const std::string& name, const Scene
   robot::UrdfOptions options;
   if (const Reader root = section["package_root"]) options.package_root = file.path().parent_path() / root.text();
   if (const Reader srdf = section["srdf"]) options.srdf = file.path().parent_path() / srdf.text();
+  return at_place(urdf, [&] { return robot::read_urdf(found, options); });
+}
+
+robot::Pose to_robot(const Pose& pose) {
+  robot::Pose out = robot::Pose::Identity();
+  out.linear() = pose.rotation, out.translation() = pose.position;
+  return out;
+}
+
+/// With the tools that it carries.
+robot::RobotModel load_welded(const Reader& section, const SceneFile& file) {
+  robot::RobotModel model = load_robot(section, file);
+  for (const Reader& tool : section["welds"].items())
+    model = at_place(tool, [&] { return weld(model, tool["to"].text(), load_robot(tool, file), to_robot(read_pose(tool))); });
+  return model;
+}
+
+RobotPart read_robot(const Reader& section, const std::string& name, const SceneFile& file) {
   RobotPart part{.name = name};
-  part.model = at_place(urdf, [&] { return std::make_shared<const robot::RobotModel>(robot::read_urdf(found, options)); });
-  const Pose pose = read_pose(section);
-  part.params.X_WB.linear() = pose.rotation, part.params.X_WB.translation() = pose.position;
+  part.model = std::make_shared<const robot::RobotModel>(load_welded(section, file));
+  part.params.X_WB = to_robot(read_pose(section));
   part.params.fixed_base = section["base"].text_or("fixed") == "fixed";
   if (const Reader base = section["base"]) choose(base, {"fixed", "free"});
   part.params.friction = section["friction"].number_or(0.5, Range::non_negative(), "");

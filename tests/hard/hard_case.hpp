@@ -30,6 +30,7 @@ std::vector<HardCase> obstacle_cases();  ///< HC1: spikes, edges, cracks and hol
 std::vector<HardCase> stack_cases();     ///< HC6, HC10, HC12, HC20: stacks, pulls, time steps, mass ratios
 std::vector<HardCase> adhesion_cases();  ///< extreme settings; what is pressed, sheared, twisted, torn and wound
 std::vector<HardCase> reduced_cases();   ///< rolls as clusters: fronts that pass, stall, turn back; falls and spins
+std::vector<HardCase> cutting_cases();   ///< blades on taut, buckled, wound and stuck tape
 std::vector<HardCase> own_cases();       ///< of the same kind: impact, crumpling, wrapping, rolling
 
 /// A setup that is made once, however often it is run.

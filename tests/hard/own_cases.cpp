@@ -143,7 +143,7 @@ std::vector<HardCase> own_cases() {
 
 std::vector<HardCase> hard_cases() {
   std::vector<HardCase> all;
-  for (const auto& group : {obstacle_cases(), stack_cases(), adhesion_cases(), reduced_cases(), own_cases()})
+  for (const auto& group : {obstacle_cases(), stack_cases(), adhesion_cases(), reduced_cases(), cutting_cases(), own_cases()})
     all.insert(all.end(), group.begin(), group.end());
   return all;
 }

@@ -37,7 +37,7 @@ conditions:
 )";
 cosim::RunSummary run(const std::vector<std::string>& overrides) {
   const cosim::RunInput input = cosim::read_run(cosim::SceneFile::parse(kScene, TAPE_SOURCE_DIR "/data/scenes/flaps_test.yaml", overrides));
-  const tape::World world = tape::World::build(input.setup);
+  tape::World world = tape::World::build(input.setup);
   const std::unique_ptr<tape::Stepper> stepper = cosim::make_stepper(tape::Backend::cpu, world, input.robots);
   tape::State state = tape::State::start(world);
   return cosim::summarize(world, cosim::simulate(world, *stepper, state, {.events = input.events, .goals = input.goals}), {});

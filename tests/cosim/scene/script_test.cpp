@@ -103,6 +103,15 @@ TEST(Script, AHandStartsInAPostureAndGoesToAnother) {
   EXPECT_NEAR(joint(hand, script.told_at(0.2), "right_finger1_joint1"), 0.17 * 1.6, 1e-12) << "half way, the profile is symmetric";
   EXPECT_EQ(script.told_at(0.4).cwiseAbs().maxCoeff(), 0);
 }
+TEST(Script, AMotionThatStartsLaterIsTheSameMotionLater) {
+  const std::string move = "{robot: arm, frame: arm_flange, by: [0, 0, -0.05], speed: 0.05}";
+  const RobotPart now = read(kArm + "script: [" + move + "]").robots.robots[0];
+  const RobotPart later = read(kArm + "script: [{wait: 2}, " + move + "]").robots.robots[0];
+  const RobotScript first(now, {}), second(later, {});
+  for (const double time : {0.0, 0.1, 0.3, 0.5, 0.9, 1.3})
+    EXPECT_LT((second.told_at(2 + time) - first.told_at(time)).cwiseAbs().maxCoeff(), 1e-12) << time;
+  EXPECT_GT((first.told_at(0.5) - first.told_at(0)).norm(), 1e-3);
+}
 TEST(Script, AFrameMovesStraightAndAStopKeepsItWhereItIs) {
   const BothWorlds both = read(kArm + R"(script:
   - {robot: arm, frame: arm_flange, by: [0, 0, -0.05], speed: 0.05, until: {speed: tape, above: 9}}
