@@ -16,8 +16,8 @@ RobotScript::RobotScript(const RobotPart& robot, const std::vector<double>& even
     const double start = motion.start.at(events);
     if (!std::isfinite(start)) continue;
     Motion known{motion.plan(told_at(start)), motion.until < 0 ? kNever : tape::Moment(0, motion.until).at(events), {}};
-    const double first = known.way.start(), planned = known.way.end() - first, pace = planned > 0 ? motion.duration / planned : 1;
-    for (double& time : known.way.times) time = start + pace * (time - first);
+    const double begin = known.way.start(), planned = known.way.end() - begin, pace = planned > 0 ? motion.duration / planned : 1;
+    for (double& time : known.way.times) time = start + pace * (time - begin);
     for (const std::string& joint : known.way.joints) known.joints.push_back(robot.model->find_joint(joint));
     motions_.push_back(std::move(known));
   }

@@ -72,10 +72,26 @@ interfaces:
 robots: {weight: {urdf: weight.urdf, base: free, position: [0.005, 0.002, 0.06], rotation_deg: [20, 30, 0], velocity: [0, 0, -1]}}
 )") + kFloor;
 
+/// A block that wants to be 40 mm inside a closed carton bears down on its flaps and the tape over them with the 50 N that it has.
+const char* const kPressOnTheCarton =
+    R"(strip: {film: packaging_48mm, length: 0.064, cells_across: 3, position: [0, -0.032, 0.215], rotation_deg: [0, 0, 90]}
+contact: {kappa: 1.0e+5}
+robots:
+  carton:
+    urdf: carton.urdf
+    joints: {hinge_back: 1.5658, hinge_front: 1.5658, hinge_right: 1.5608, hinge_left: 1.5608}
+    drives: {kp: 0.01401, target: 0}
+    material: board
+  presser: {urdf: presser.urdf, position: [0, 0, 0.3], joints: {press: 0.0845}, drives: {kp: 2000, kd: 50}}
+interfaces: [{between: [tape.sticky, board], law: per_pair, cn: 0.25, ct: 0.25, slip: bonding}]
+script: [{robot: presser, joints: {press: 0.13}, duration: 0.5}]
+)";
+
 INSTANTIATE_TEST_SUITE_P(Cases, RobotsHard,
                          testing::Values(RobotCase{"target_inside_the_table", kTargetInside.c_str(), 30, 0.002},
                                          RobotCase{"dead_stop", kDeadStop.c_str(), 40, 0.002},
-                                         RobotCase{"falls_on_a_roll", kFallsOnRoll.c_str(), 30, 0.005}),
+                                         RobotCase{"falls_on_a_roll", kFallsOnRoll.c_str(), 30, 0.005},
+                                         RobotCase{"press_on_the_carton", kPressOnTheCarton, 60, 0.002}),
                          [](const auto& hard) { return std::string(hard.param.name); });
 
 TEST(RobotsHardStart, ALinkThatTouchesTheTapeIsRefusedByName) {

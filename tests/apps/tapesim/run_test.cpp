@@ -67,7 +67,8 @@ TEST_F(Run, FailsByNameWhereTheSceneStatesAConditionThatItDoesNotMeet) {
   EXPECT_THAT(outcome.out, HasSubstr("condition not met: tip_high"));
   EXPECT_THAT(outcome.out, Not(HasSubstr("tip_low")));
   std::map<std::string, json> conditions;
-  for (const json& c : report("a")["conditions"]) conditions[c["name"]] = c;
+  const json whole = report("a");
+  for (const json& c : whole["conditions"]) conditions[c["name"]] = c;
   EXPECT_EQ(conditions.at("tip_low")["met"], true);
   EXPECT_LT(conditions.at("tip_low")["value"], 0.004);
   EXPECT_EQ(conditions.at("tip_high")["met"], false);

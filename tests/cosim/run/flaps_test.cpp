@@ -13,6 +13,8 @@ constexpr double kClosed = std::numbers::pi / 2;         // [rad]
 constexpr double kTwenty = 20 * std::numbers::pi / 180;  // [rad]
 
 /// Half a degree from closed, tape over the gap of the outer flaps. A block presses it on, goes up, and holds nothing any more.
+/// Of the two columns of vertices on a flap the outer one, a sixth of the strip, must stay; the one by the gap bears the load and gives
+/// way. The law counts by pairs: 1 N on cells of 16 mm is as much as the 0.25 N on 8 mm of the shipped scene.
 const std::string kScene = R"(film: packaging_48mm
 time: {dt: 0.02, duration: 1.4}
 contact: {kappa: 1.0e+5}
@@ -24,7 +26,7 @@ robots:
     drives: {kp: 0.01401, target: 0}
     material: board
   presser: {urdf: presser.urdf, position: [0, 0, 0.3], joints: {press: 0.0845}, drives: {kp: 2000, kd: 50, effort: 20}}
-interfaces: [{between: [tape.sticky, board], law: per_pair, cn: 0.25, ct: 0.25, slip: bonding}]
+interfaces: [{between: [tape.sticky, board], law: per_pair, cn: 1, ct: 1, slip: bonding}]
 script:
   - {robot: presser, joints: {press: 0.089}, duration: 0.2}
   - {wait: 0.1}
@@ -32,7 +34,7 @@ script:
 conditions:
   - {name: right, joint: "carton:hinge_right", above: 1.4835, held: 0.5}
   - {name: left, joint: "carton:hinge_left", above: 1.4835, held: 0.5}
-  - {name: stuck, attached: [tape, "carton:flap_left"], above: 0.25}
+  - {name: stuck, attached: [tape, "carton:flap_left"], above: 0.15}
   - {name: seam, seam: [tape, "carton:flap_left", "carton:flap_right"], along: [0, 1, 0], above: 0.06}
 )";
 cosim::RunSummary run(const std::vector<std::string>& overrides) {

@@ -6,6 +6,7 @@
 
 #include "cosim/run/attachment.hpp"
 #include "tape/math/rotation.hpp"
+#include "tape/model/primitives.hpp"
 #include "tests/support/simulation.hpp"
 
 namespace {
@@ -32,7 +33,8 @@ struct Sealed {
       tape::Body& body = tape::test::add_body(setup, name, box, tape::Motion::fixed, Vec3(0.02, side * 0.0515, -0.01));
       if (side < 0) body.pose.rotation = tape::rotation_exp(Vec3(0, 0, std::numbers::pi / 2));
     }
-    setup.scene.adhesives.push_back({.a = 1, .b = 0, .adhesion = {.law = tape::AdhesionLaw::per_pair}});
+    tape::AdhesivePair& sticks = setup.scene.adhesives.emplace_back();
+    sticks.a = 1, sticks.adhesion.law = tape::AdhesionLaw::per_pair;
     return setup;
   }());
   tape::State state = tape::State::start(world);
