@@ -75,7 +75,7 @@ TEST(ShippedScenes, EveryOneLoadsWithoutUnknownKeys) {
   for (const fs::path& path : files) {
     const SceneFile file = SceneFile::load(path);
     EXPECT_EQ(read_worlds(file).tape.name, path.stem().string());
-    for (const char* section : {"solver", "record", "camera", "cameras", "video", "effects"}) know_all(file[section]);
+    for (const char* section : {"solver", "record", "camera", "cameras", "video", "effects", "cutting"}) know_all(file[section]);
     for (const char* section : {"barrier", "friction", "bending", "membrane", "tether"}) know_all(file[section]);
     EXPECT_NO_THROW(file.require_all_used()) << path;
   }
