@@ -19,7 +19,8 @@ RobotModel arm() {
 }
 /// A body with a lid 0.2 m above it that turns about x.
 RobotModel tool() {
-  RobotModel model{.name = "tool", .links = {{.name = "body", .inertial = ball(1, Vec3(0, 0, 0.1))}, {.name = "lid", .inertial = ball(0.5, Vec3::Zero())}}};
+  RobotModel model{.name = "tool",
+                   .links = {{.name = "body", .inertial = ball(1, Vec3(0, 0, 0.1))}, {.name = "lid", .inertial = ball(0.5, Vec3::Zero())}}};
   model.joints = {{.name = "hinge", .X_PJ = Pose(Eigen::Translation3d(0, 0, 0.2)), .axis = Vec3::UnitX()}};
   model.frames = {{"rim", 1, Pose(Eigen::Translation3d(0, 0.3, 0))}};
   model.may_overlap = {{0, 1}};
