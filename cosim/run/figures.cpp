@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "cosim/roll/roll_figures.hpp"
+#include "cosim/run/attachment.hpp"
 #include "cosim/run/summary.hpp"
 #include "tape/model/motion.hpp"
 #include "tape/model/strip_mesh.hpp"
@@ -190,14 +191,14 @@ FigureValues peel_force(const World& world, const RunLog& log) {
 }
 
 FigureValues cuts(const World& world, const RunLog& log) {
-  Real made = 0, refused = 0, area = 0, pieces = static_cast<Real>(world.setup.scene.strips.size());
+  Real made = 0, refused = 0, area = 0, all = 0;
   for (const StepRow& row : log.rows)
     for (const CutReport& cut : row.cuts) {
       (cut.refusal.empty() ? made : refused) += 1;
       area += cut.kerf_area;
-      if (cut.refusal.empty()) pieces = cut.pieces;
     }
-  return {{"cut_events", made}, {"cuts_refused", refused}, {"kerf_area_m2", area}, {"strip_pieces", pieces}};
+  for (std::size_t s = 0; s < world.assembly.strips.size(); ++s) all += pieces(world, s);
+  return {{"cut_events", made}, {"cuts_refused", refused}, {"kerf_area_m2", area}, {"strip_pieces", all}};
 }
 
 constexpr Figure kFigures[] = {
@@ -217,7 +218,7 @@ constexpr Figure kFigures[] = {
     {"momentum_exchange",
      "momentum given to robots with a free base that did not arrive, of what was given: worst step; nothing if none was touched",
      momentum_exchange},
-    {"cuts", "cuts made and refused, area of all kerfs, pieces of the strip that was cut last", cuts},
+    {"cuts", "cuts made and refused, area of their kerfs, pieces of all strips at the end", cuts},
     {"roll", "turns, length, outer radius, mass and inertia of what is wound at the end", roll},
 };
 

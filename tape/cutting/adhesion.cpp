@@ -22,6 +22,13 @@ struct Four {
   Four(const std::vector<Vec3>& all, int vertex, const Index3& triangle)
       : x{at(all, vertex), at(all, triangle[0]), at(all, triangle[1]), at(all, triangle[2])} {}
   Real distance() const { return combine(closest_vertex_triangle(x).weight, x).norm(); }
+  /// In which a remembered slip u is B^T u (LaggedSlip): two edges of the triangle, and across them.
+  Mat3 basis() const {
+    const Vec3 first = x[2] - x[1], second = x[3] - x[1];
+    Mat3 B;
+    B << first, second, first.cross(second);
+    return B;
+  }
   Mat3 edges() const {
     Mat3 D;
     D << x[1] - x[0], x[2] - x[0], x[3] - x[0];
@@ -112,6 +119,7 @@ class PairMover {
     out.vertex = vertex, out.triangle = triangle;
     if constexpr (std::is_same_v<Memory, Cohesion::Memory>) {
       if (engaged < 1) out.beta = engaged;
+      out.slip = after(vertex, triangle).basis().transpose() * before(*heaviest->first).basis().transpose().inverse() * out.slip;
     } else {
       Mat3 strain = Mat3::Zero();
       Real stretch = 0, sum = 0;
@@ -230,22 +238,18 @@ class SampleMover {
   std::vector<int> gone_;                                // old triangles of the strip
   std::vector<Memory> kept_;
 };
+
+/// Index in the world after the cut. Those of the strip are from `first` on, and follow `now`; `left` of them are left.
+int renumbered(int i, int first, const std::vector<int>& now, std::ptrdiff_t left) {
+  const int local = i - first, n = static_cast<int>(std::ssize(now));
+  if (local < 0) return i;
+  if (local >= n) return i + static_cast<int>(left) - n;
+  return at(now, local) < 0 ? -1 : first + at(now, local);
+}
 }  // namespace
 
-int CutInWorld::new_vertex(int v) const {
-  const int local = v - first_vertex, n = static_cast<int>(std::ssize(cut.new_vertex));
-  if (local < 0) return v;
-  if (local >= n) return v + static_cast<int>(std::ssize(cut.mesh.rest)) - n;
-  const int now = at(cut.new_vertex, local);
-  return now < 0 ? -1 : first_vertex + now;
-}
-int CutInWorld::new_triangle(int t) const {
-  const int local = t - first_triangle, n = static_cast<int>(std::ssize(cut.new_triangle));
-  if (local < 0) return t;
-  if (local >= n) return t + static_cast<int>(std::ssize(cut.mesh.triangles)) - n;
-  const int now = at(cut.new_triangle, local);
-  return now < 0 ? -1 : first_triangle + now;
-}
+int CutInWorld::new_vertex(int v) const { return renumbered(v, first_vertex, cut.new_vertex, std::ssize(cut.mesh.rest)); }
+int CutInWorld::new_triangle(int t) const { return renumbered(t, first_triangle, cut.new_triangle, std::ssize(cut.mesh.triangles)); }
 
 EffectMemory carried_over(const CutInWorld& cut, const EffectMemory& memory) {
   EffectMemory out = memory;

@@ -34,6 +34,9 @@ StripMesh mesh_of(const World& world, const StripPart& part) {
   return mesh;
 }
 
+/// [m] at which a film begins to feel itself.
+Real contact_distance(const Scene& scene, int film) { return 2 * scene.films[static_cast<std::size_t>(film)].xi + scene.dhat(); }
+
 /// Energy of motion [J] of the strips.
 Real kinetic(const World& world, const State& state) {
   Real sum = 0;
@@ -84,12 +87,11 @@ class Surgery {
   }
   const Film& film() const { return world_.setup.scene.films[static_cast<std::size_t>(part_.film)]; }
   Real per_area() const { return film().thickness * film().density; }
-  /// Parts must not feel each other across the kerf, nor a cell its neighbours.
+  /// No part of what is left may feel another, nor a cell its neighbours.
   Kerf kerf() const {
     constexpr Real kMore = 1.05;
-    const Real contact = kMore * (2 * film().xi + world_.setup.scene.dhat());
     Kerf out = world_.setup.cutting.kerf;
-    out.clearance = std::max(out.clearance, contact), out.width = std::max(out.width, contact);
+    out.clearance = std::max(out.clearance, kMore * contact_distance(world_.setup.scene, part_.film));
     return out;
   }
   bool touches_cluster() const {
@@ -189,6 +191,16 @@ std::vector<int> sharp_vertices(const World& world, const Blade& blade) {
   }
   if (out.size() < 2) throw InputError("cutting: the edge of blade '" + blade.body + "' does not run through vertices of its mesh");
   return out;
+}
+
+void require_blades(const World& world) {
+  const Scene& scene = world.setup.scene;
+  for (const Blade& blade : scene.blades) sharp_vertices(world, blade);
+  if (scene.blades.empty()) return;
+  for (const Strip& strip : scene.strips)
+    if (const Real contact = contact_distance(scene, strip.film); !(world.setup.cutting.kerf.width > contact))
+      throw InputError("cutting.width = " + to_text(world.setup.cutting.kerf.width) + ": the sides of a cut in strip '" + strip.name +
+                       "' would touch (allowed: above 2 xi + dhat = " + to_text(contact) + " m)");
 }
 
 BladeWatch::BladeWatch(const World& world) : world_(world), sharp_(world.assembly.x.size(), 0) {

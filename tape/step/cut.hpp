@@ -10,6 +10,9 @@ namespace tape {
 /// @throws InputError if there is no such body, the edge has no length, or fewer than two vertices of the body's mesh are on it
 std::vector<int> sharp_vertices(const World& world, const Blade& blade);
 
+/// @throws InputError if a blade cannot be, or a kerf is no wider than the contact of a strip with itself: its sides would touch
+void require_blades(const World& world);
+
 /// Watches the blades of a world, as long as no strip is cut.
 class BladeWatch {
  public:

@@ -61,7 +61,7 @@ World World::build(Setup setup) {
   world.plan = make_plan(setup);
   world.setup = std::move(setup);
   world.lay_out();
-  for (const Blade& blade : world.setup.scene.blades) sharp_vertices(world, blade);
+  require_blades(world);
   check_rolls(world.setup.scene, world.assembly, world.surface, world.assembly.x);
   check_start(world.assembly.x, world.surface, world.setup.scene.dhat());
   check_nothing_inside(world.assembly.x, world.surface);

@@ -1,6 +1,5 @@
-#include <algorithm>
-
 #include "cosim/roll/settled_roll.hpp"
+#include "cosim/run/attachment.hpp"
 #include "cosim/run/read_run.hpp"
 #include "tests/hard/hard_case.hpp"
 
@@ -42,26 +41,8 @@ std::string roll_under_blade() {
          blade(0.012, 0.026, 0.01, 0.5);
 }
 
-int pieces(const Simulation& s) {
-  const StripPart& strip = s.world().assembly.strips[0];
-  std::vector<int> part(static_cast<std::size_t>(strip.vertices));
-  for (std::size_t v = 0; v < part.size(); ++v) part[v] = static_cast<int>(v);
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (int t = strip.first_triangle; t < strip.first_triangle + strip.triangles; ++t) {
-      const Index3& corner = s.world().assembly.triangles[static_cast<std::size_t>(t)];
-      int& a = part[static_cast<std::size_t>(corner[0])];
-      int& b = part[static_cast<std::size_t>(corner[1])];
-      int& c = part[static_cast<std::size_t>(corner[2])];
-      const int least = std::min({a, b, c});
-      changed |= a != least || b != least || c != least;
-      a = b = c = least;
-    }
-  }
-  return static_cast<int>(std::count_if(part.begin(), part.end(), [&, v = 0](int p) mutable { return p == v++; }));
-}
 void is_cut(const Simulation& s, std::vector<std::string>& broken) {
-  if (pieces(s) < 2) broken.push_back("the strip is whole");
+  if (cosim::pieces(s.world(), 0) < 2) broken.push_back("the strip is whole");
 }
 }  // namespace
 

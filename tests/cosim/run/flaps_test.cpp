@@ -13,8 +13,7 @@ constexpr double kClosed = std::numbers::pi / 2;         // [rad]
 constexpr double kTwenty = 20 * std::numbers::pi / 180;  // [rad]
 
 /// Half a degree from closed, tape over the gap of the outer flaps. A block presses it on, goes up, and holds nothing any more.
-/// Of the two columns of vertices on a flap the outer one, a sixth of the strip, must stay; the one by the gap bears the load and gives
-/// way. The law counts by pairs: 1 N on cells of 16 mm is as much as the 0.25 N on 8 mm of the shipped scene.
+/// The law counts by pairs: 1 N on cells of 16 mm is as much as the 0.25 N on 8 mm of the shipped scene.
 const std::string kScene = R"(film: packaging_48mm
 time: {dt: 0.02, duration: 1.4}
 contact: {kappa: 1.0e+5}
@@ -34,7 +33,6 @@ script:
 conditions:
   - {name: right, joint: "carton:hinge_right", above: 1.4835, held: 0.5}
   - {name: left, joint: "carton:hinge_left", above: 1.4835, held: 0.5}
-  - {name: stuck, attached: [tape, "carton:flap_left"], above: 0.15}
   - {name: seam, seam: [tape, "carton:flap_left", "carton:flap_right"], along: [0, 1, 0], above: 0.06}
 )";
 cosim::RunSummary run(const std::vector<std::string>& overrides) {
@@ -58,7 +56,6 @@ TEST(Flaps, AStripPressedOverTheGapHoldsThem) {
     }
   EXPECT_FALSE(held.fell_short);
   EXPECT_LT(condition(held, "right").value, kClosed + 0.01) << "the stop is at a right angle";
-  EXPECT_LE(condition(held, "stuck").value, 0.5);
   EXPECT_LE(condition(held, "seam").value, 0.064 + 1e-6) << "the strip is no longer";
   EXPECT_EQ(held.intersections, 0);
 }
@@ -70,6 +67,5 @@ TEST(Flaps, WithoutAdhesionTheyOpenByTwentyDegreesAndTheRunFails) {
     EXPECT_FALSE(condition(loose, flap).met);
     EXPECT_LT(condition(loose, flap).value, kClosed - kTwenty) << flap;
   }
-  EXPECT_EQ(condition(loose, "stuck").value, 0);
   EXPECT_EQ(condition(loose, "seam").value, 0);
 }

@@ -82,7 +82,9 @@ TEST(Cut, ABladeThatPressesSeparatesATautStripAndItsTensionGoes) {
     });
     EXPECT_TRUE(s.broken.empty()) << s.broken.front();
     const Real tension = 5e7 * 1.8e-4 * kWidth * 5e-4 / kLength;  // E A strain, without what narrowing gives: 0.855 N
-    EXPECT_NEAR(taut, tension, cuts ? 0.3 * tension : 10 * tension);
+    if (cuts) {
+      EXPECT_NEAR(taut, tension, 0.3 * tension) << "the blade bends the strip until it cuts";
+    }
     EXPECT_EQ(made, cuts ? 1 : 0);
     if (cuts)
       EXPECT_LT(s.report().grip_force[0].norm(), 0.01 * tension);
@@ -165,6 +167,7 @@ TEST(Cut, SavedBeforeOrAfterItGoesOnToTheBit) {
   const std::string early = snapshot_name("early"), late = snapshot_name("late");
   test::Simulation through(setup);
   bool cut = false;
+  const int whole = through.world().assembly.strip_vertices;
   save_snapshot(early, through.world(), through.state());
   while (!cut) {
     through.step();
@@ -183,7 +186,7 @@ TEST(Cut, SavedBeforeOrAfterItGoesOnToTheBit) {
   for (int k = 0; k < 3; ++k) again.step();
   EXPECT_EQ(again.state().hash(), through.state().hash()) << "resumed after the cut";
   again.resume(early);
-  EXPECT_EQ(again.world().assembly.strip_vertices, 0 + test::Simulation(setup).world().assembly.strip_vertices) << "whole again";
+  EXPECT_EQ(again.world().assembly.strip_vertices, whole) << "whole again";
   while (again.state().step < at + 5) again.step();
   EXPECT_EQ(again.state().hash(), through.state().hash()) << "set back to before the cut";
   std::filesystem::remove(early), std::filesystem::remove(late);
@@ -224,4 +227,11 @@ TEST(Cut, ASecondBladeWaitsAStep) {
   ASSERT_EQ(s.cuts().size(), 1u);
   EXPECT_EQ(s.cuts()[0].blade, "second");
   EXPECT_EQ(s.cuts()[0].pieces, 3);
+}
+TEST(Cut, AKerfThatWouldCloseIsRefused) {
+  tape::Setup setup = strip_under_blade(2e-3);
+  setup.cutting.kerf.width = 2 * test::vinyl().xi + setup.scene.dhat();  // 0.27 mm
+  EXPECT_THROW(World::build(setup), InputError);
+  setup.cutting.kerf.width *= 1.01;
+  EXPECT_NO_THROW(World::build(setup));
 }
