@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "apps/report/json.hpp"
+#include "apps/report/phase_table.hpp"
 #include "apps/report/table.hpp"
 #include "apps/tapesim/interrupt.hpp"
 #include "apps/tapesim/progress.hpp"
@@ -41,12 +42,17 @@ cosim::RunLog simulate(const RunArguments& arguments, LoadedWorld& loaded, Stepp
   const int first = state.step;
   const int planned = cosim::planned_steps(world.setup.scene) - first;
   Progress progress("run", arguments.steps < 0 ? planned : std::min(planned, arguments.steps));
-  cosim::RunOptions options{
-      .max_steps = arguments.steps, .record = loaded.input.run.record, .events = loaded.input.run.events, .goals = loaded.input.run.goals};
+  const std::vector<cosim::Phase>& phases = loaded.input.run.phases;
+  cosim::RunOptions options{.max_steps = arguments.steps,
+                            .record = loaded.input.run.record,
+                            .events = loaded.input.run.events,
+                            .goals = loaded.input.run.goals,
+                            .phases = phases};
   options.stop_asked = interrupted;
   options.on_step = [&](const State& now, const cosim::StepRow& row) {
     folder.add_step(row);
-    progress.update(now.step - first, fmt::format("t {:.3f} s, {:.1f} ms/step", now.time, row.report.wall_ms));
+    const std::string phase = row.phase < 0 ? "" : phases[static_cast<std::size_t>(row.phase)].name + ", ";
+    progress.update(now.step - first, fmt::format("{}t {:.3f} s, {:.1f} ms/step", phase, now.time, row.report.wall_ms));
   };
   options.on_cut = [&] { folder.start_mesh(); };
   const auto* coupled = dynamic_cast<const cosim::CoupledStepper*>(&stepper);  // none where there are no robots
@@ -63,6 +69,7 @@ void print_summary(const cosim::RunSummary& s, const RunFolder& folder) {
              rounded(s.sim_time), rounded(s.wall), rounded(s.step_ms.mean), rounded(s.newton_mean),
              s.linear_solver.empty() ? "none" : s.linear_solver);
   if (!s.failure.empty()) fmt::print("failed at {}\n", s.failure);
+  if (!s.phases.empty()) fmt::print("{}", report::to_text(report::phase_table(s.phases)));
   for (const auto& [name, value] : s.figures) fmt::print("  {} = {}\n", name, rounded(value));
   for (const cosim::Condition& c : s.conditions)
     if (!c.met) fmt::print("  condition not met: {} = {} (required: {})\n", c.name, rounded(c.value), c.required);
@@ -119,7 +126,7 @@ int run(const RunArguments& arguments) {
   }
   const int first_step = state.step;
   RunFolder folder(arguments.out.empty() ? "out/" + loaded.world.setup.scene.name : arguments.out, loaded.world, loaded.input.run.robots,
-                   state, camera_text(loaded.input.pictures.cameras));
+                   loaded.input.run.phases, state, camera_text(loaded.input.pictures.cameras));
   remember_interrupts();
   const cosim::RunLog log = simulate(arguments, loaded, *stepper, state, folder);
   const cosim::RunSummary summary = cosim::summarize(loaded.world, log, loaded.input.run.figures);
