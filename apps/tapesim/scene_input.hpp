@@ -1,6 +1,6 @@
 #pragma once
+#include "apps/movie/params.hpp"
 #include "apps/tapesim/commands.hpp"
-#include "apps/tapesim/pictures.hpp"
 #include "cosim/run/read_run.hpp"
 #include "tape/step/settle.hpp"
 
@@ -11,7 +11,7 @@ SettleParams watched_settle();
 /// All of a scene file: the simulation, and the pictures of it.
 struct SceneInput {
   cosim::RunInput run;
-  PictureParams pictures;
+  movie::PictureParams pictures;
 };
 /// @throws InputError also for keys that nobody knows
 SceneInput load_scene(const SceneArguments& arguments);

@@ -1,7 +1,7 @@
 #include "apps/tapesim/settings_list.hpp"
 
+#include "apps/movie/params.hpp"
 #include "apps/report/table.hpp"
-#include "apps/tapesim/pictures.hpp"
 #include "cosim/exchange/robots.hpp"
 #include "cosim/run/run_log.hpp"
 #include "tape/step/world.hpp"
@@ -64,10 +64,11 @@ std::string settings_text() {
   for_each_effect([&]<class T>(std::type_identity<T>) { add<typename T::Params>(table, std::string(T::name)); });
   add<cosim::ExchangeParams>(table, "exchange");
   add<cosim::RecordParams>(table, "record");
-  add<ViewParams>(table, "video");
+  add<movie::ViewParams>(table, "video");
   add<video::VideoSettings>(table, "video");
   add<render::LookAtSettings>(table, "camera");
   add<render::PinholeSettings>(table, "camera");
+  add<movie::InsetParams>(table, "camera.inset");
   return report::to_text(table);
 }
 }  // namespace tape::tapesim
