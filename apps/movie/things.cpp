@@ -22,6 +22,20 @@ std::optional<LinkIndex> find_link(const std::string& name, const RecordedMesh& 
   return {};
 }
 
+std::optional<std::size_t> find_body(const std::string& name, const RecordedMesh& mesh) {
+  std::size_t body = 0;
+  for (const cosim::RecordedObject& object : mesh.objects) {
+    if (object.strip) continue;
+    if (object.name == name) return body;
+    ++body;
+  }
+  return {};
+}
+
+[[noreturn]] void refuse_mount(const std::string& name) {
+  throw InputError("camera.mount = " + name + ": no body and no link robot:link has this name");
+}
+
 /// @throws InputError if nothing is named so
 std::vector<int> vertices_named(const RecordedMesh& mesh, const std::string& name) {
   std::string names;
@@ -71,14 +85,18 @@ Vec3 place_of(const std::string& name, const RecordedMesh& mesh, const RecordedF
 }
 
 Pose frame_of(const std::string& name, const RecordedMesh& mesh, const RecordedFrame& frame) {
-  std::size_t body = 0;
-  for (const cosim::RecordedObject& object : mesh.objects) {
-    if (object.strip) continue;
-    if (object.name == name) return frame.bodies[body];
-    ++body;
-  }
+  if (const auto body = find_body(name, mesh)) return frame.bodies[*body];
   if (const auto found = find_link(name, mesh)) return cosim::to_tape(frame.robots[found->robot].links[found->link]);
-  throw InputError("camera.mount = " + name + ": no body and no link robot:link has this name");
+  refuse_mount(name);
+}
+
+void require_things(const std::vector<CameraParams>& cameras, const RecordedMesh& mesh) {
+  for (const CameraParams& camera : cameras) {
+    const std::string mount = std::visit([](const auto& lens) { return lens.mount; }, camera.lens);
+    if (!mount.empty() && !find_body(mount, mesh) && !find_link(mount, mesh)) refuse_mount(mount);
+    const auto* look = std::get_if<render::LookAtSettings>(&camera.lens);
+    if (look && !look->follow.empty()) vertices_named(mesh, look->follow);
+  }
 }
 
 std::vector<std::string> bearers_of(const RecordedMesh& mesh) {

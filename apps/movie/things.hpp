@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/movie/params.hpp"
 #include "cosim/run/state_file.hpp"
 
 /// What names in a `camera`, `video` section stand for in a recording.
@@ -16,6 +17,8 @@ std::vector<int> row_at(const RecordedMesh& mesh, Real along);
 Vec3 place_of(const std::string& name, const RecordedMesh& mesh, const RecordedFrame& frame);
 /// Frame of a body, or of a link as robot:link.  @throws InputError if nothing is named so
 Pose frame_of(const std::string& name, const RecordedMesh& mesh, const RecordedFrame& frame);
+/// @throws InputError where a camera follows or is mounted on what is not there
+void require_things(const std::vector<CameraParams>& cameras, const RecordedMesh& mesh);
 /// Names of what bears a force: grips, and links as robot:link.
 std::vector<std::string> bearers_of(const RecordedMesh& mesh);
 /// [N] magnitude of what one of these bears: contacts, adhesion, holds.

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include "apps/movie/things.hpp"
 #include "apps/report/json.hpp"
 #include "apps/report/phase_table.hpp"
 #include "apps/report/table.hpp"
@@ -134,7 +135,11 @@ int run(const RunArguments& arguments) {
   set_threads(arguments.threads);
   const Backend backend = backend_of(arguments.backend);
   LoadedWorld loaded = load_world(arguments.scene, Rolls::settle);
-  if (arguments.video) movie::require_video(loaded.input.pictures);
+  if (arguments.video) {
+    movie::require_video(loaded.input.pictures);
+    movie::require_things(loaded.input.pictures.cameras,
+                          cosim::RecordedMesh::of(loaded.world, loaded.input.run.robots, loaded.input.run.phases, "", ""));
+  }
   const std::unique_ptr<Stepper> stepper = cosim::make_stepper(backend, loaded.world, loaded.input.run.robots);
   State state = arguments.resume.empty() ? State::start(loaded.world) : resumed(arguments.resume, loaded.world);
   if (!arguments.resume.empty()) {

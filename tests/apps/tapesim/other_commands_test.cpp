@@ -186,7 +186,9 @@ TEST_F(Render, CtrlCLeavesNoVideo) {
   EXPECT_EQ(folder.names("a"), before);
 }
 TEST_F(Render, AVideoThatCannotBeIsRefusedBeforeTheSimulation) {
-  for (const char* set : {"video.width=161", "camera={eye: [1, 1, 1], target: [1, 1, 1]}", "camera={fx: 100, fy: 100, width: 161}"}) {
+  for (const char* set :
+       {"video.width=161", "camera={eye: [1, 1, 1], target: [1, 1, 1]}", "camera={fx: 100, fy: 100, width: 161}",
+        "camera={eye: [1, 1, 1], follow: moon}", "camera={eye: [1, 1, 1], mount: moon}", "camera={eye: [1, 1, 1], inset: {}}"}) {
     const Outcome outcome = tapesim({"run", scene, "--out", (folder / "a").string(), "--video", "--set", set});
     EXPECT_EQ(outcome.exit_code, 2) << set;
     EXPECT_EQ(folder.names("a").size(), 0u) << set;
