@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "tape/math/rotation.hpp"
@@ -41,6 +42,10 @@ TEST(Visibility, ATriangleBeforeItHidesWhatLiesBehindAndOneBehindItNothing) {
   TriangleMesh behind = plate(-0.5);
   for (Vec3& v : behind.vertices) v.z() += 0.3;
   EXPECT_EQ(sight_of(kCamera, hub_turned(0), bodies(behind)).share, 1);
+  // Through the middle of a rim that leans by 30 degrees: its farther half is hidden.
+  TriangleMesh through = plate(-0.5);
+  for (Vec3& v : through.vertices) v.z() = 0.5 - 0.01 * std::sqrt(0.75);
+  EXPECT_NEAR(sight_of(kCamera, hub_turned(30), bodies(through)).share, 0.5, 0.03);
 }
 TEST(Visibility, FromTheSideTheLandmarkIsTheMiddleOfTheCoreUnderItsTape) {
   const Sight side = sight_of(kCamera, hub_turned(90), tapes(plate(-0.5)));

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "cosim/episode/episode_file.hpp"
+#include "cosim/run/state_file.hpp"
 #include "tests/apps/tapesim/program.hpp"
 
 using namespace tape::test;
@@ -217,6 +218,17 @@ TEST_F(ReplayCommand, SettingsOfAnEpisodeGoToItsScene) {
   EXPECT_NEAR(settings["time"]["duration"], 0.8, 1e-12) << "as long as the recording";
 }
 
+TEST_F(ReplayCommand, LinksStandAtTheBeginningWhereTheyWereRecordedAtItsStart) {
+  variant_text("later", {{"later.h5", "real.h5"}, {"start: 0\n", "start: 0.35\n"}});
+  ASSERT_EQ(replay("later", kPosed).exit_code, 0);
+  const cosim::StateReader states(at("out_later/later/none/1/state.h5"));
+  const cosim::RecordedFrame first = states.frame(0);
+  const auto& objects = states.mesh().objects;
+  const auto tray = std::ranges::find(objects, "tray:tray", &cosim::RecordedObject::name) - objects.begin();
+  // Halfway: the tray goes over 50 mm from 0.1 s to 0.6 s, the same forth as back.
+  EXPECT_NEAR(first.bodies.at(static_cast<std::size_t>(tray)).position.x(), 0.025, 1e-3);
+  EXPECT_NEAR(states.frame(states.frames() - 1).time, 0.45, 1e-9);
+}
 TEST_F(ReplayCommand, AGridGoesOnWhereItWas) {
   variant("first", nothing);
   variant("second", [](Episode& e) {

@@ -220,6 +220,7 @@ TEST(Exchange, PosedLinksAreWhereTheyAreToldToBeWhateverTheyPush) {
     ASSERT_TRUE(both.step()) << both.report.failure;
     const Real t = 0.01 * k, told = t < 0.05 ? 0.2 * t : std::min(0.06, 0.01 + (t - 0.05));
     EXPECT_NEAR(both.bullet().state(0).q[0], told, 1e-12) << k;
+    EXPECT_NEAR(both.bullet().state(0).v[0], k <= 5 ? 0.2 : k <= 10 ? 1 : 0, 1e-9) << k;
     EXPECT_LT(both.stepper->exchange().mismatch, 1e-6) << k;
     EXPECT_EQ(both.bullet().drive_effort(0).norm(), 0);
   }
