@@ -29,10 +29,17 @@ T read_as(const cosim::Reader& camera) {
   camera.read(settings);
   return settings;
 }
+/// Names go into the text of a recording in single quotes.
+void require_name(const cosim::Reader& where, const std::string& name) {
+  if (name.find('\'') != std::string::npos) where.fail("a name holds no quotes");
+}
 CameraParams read_camera(const cosim::Reader& camera) {
   if (camera["fx"]) {
-    cosim::read_distortion(camera["distortion"]);  // checked, no more: pictures are drawn as an ideal lens makes them
-    return read_as<render::PinholeSettings>(camera);
+    auto pinhole = read_as<render::PinholeSettings>(camera);
+    pinhole.calibration.lens = cosim::read_distortion(camera["distortion"]);
+    require_name(camera["name"], pinhole.name);
+    require_name(camera["mount"], pinhole.mount);
+    return pinhole;
   }
   const auto look = read_as<render::LookAtSettings>(camera);
   try {
@@ -40,8 +47,20 @@ CameraParams read_camera(const cosim::Reader& camera) {
   } catch (const InputError& e) {
     throw InputError(camera.where() + ": " + e.what());
   }
-  if (look.follow.find('\'') != std::string::npos) camera["follow"].fail("no thing has such a name");
+  require_name(camera["follow"], look.follow);
+  require_name(camera["mount"], look.mount);
   return look;
+}
+
+/// Pictures side by side are of one size.
+void require_one_size(const std::vector<CameraParams>& cameras, const std::vector<cosim::Reader>& where) {
+  const auto* first = std::get_if<render::PinholeSettings>(&cameras[0]);
+  for (std::size_t i = 1; i < cameras.size(); ++i) {
+    const auto* other = std::get_if<render::PinholeSettings>(&cameras[i]);
+    if (!first && !other) continue;
+    if (!first || !other || first->calibration.width != other->calibration.width || first->calibration.height != other->calibration.height)
+      where[i].fail("a calibrated camera has its own size; beside it stand only those of the same");
+  }
 }
 }  // namespace
 
@@ -49,10 +68,9 @@ std::vector<CameraParams> read_cameras(const cosim::Reader& camera) {
   if (!camera) return {};
   if (!camera.is_list()) return {read_camera(camera)};
   std::vector<CameraParams> cameras;
-  for (const cosim::Reader& one : camera.items()) {
-    cameras.push_back(read_camera(one));
-    if (std::holds_alternative<render::PinholeSettings>(cameras.back())) one.fail("a calibrated camera has its own size and stands alone");
-  }
+  const std::vector<cosim::Reader> items = camera.items();
+  for (const cosim::Reader& one : items) cameras.push_back(read_camera(one));
+  if (!cameras.empty()) require_one_size(cameras, items);
   return cameras;
 }
 

@@ -304,7 +304,9 @@ void require_frames(const StateReader& recording) {
 
 void require_video(const PictureParams& params) {
   const auto* pinhole = params.cameras.empty() ? nullptr : std::get_if<render::PinholeSettings>(&params.cameras[0]);
-  require_valid(video_settings(params, pinhole ? pinhole->width : params.video.width, pinhole ? pinhole->height : params.video.height));
+  const int cameras = static_cast<int>(params.cameras.size());
+  require_valid(video_settings(params, pinhole ? cameras * pinhole->calibration.width : params.video.width,
+                               pinhole ? pinhole->calibration.height : params.video.height));
 }
 
 bool write_video(const StateReader& recording, const PictureParams& params, const std::filesystem::path& file) {

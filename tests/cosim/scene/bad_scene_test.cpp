@@ -53,6 +53,7 @@ TEST(BadScene, IsRefusedByFileLineAndKey) {
       {"gravity: [0, 0, down]", ":4: ", {"gravity.2 = down", "not a number"}},
       {"seed: 1.5", ":4: ", {"seed = 1.5", "not a whole number"}},
       {"strips: [{length: 1}]", ":4: ", {"strips", "either strip or strips"}},
+      {"exchange: {schedule: posed}\nrobots: {a: {urdf: weight.urdf, base: free}}", ":5: ", {"robots.a.base = free", "posed"}},
       {"bodies: {a: {size: [1, 1, 1]}}", ":4: ", {"bodies.a.shape", "missing"}},
       {"bodies: {a: {shape: box}}", ":4: ", {"bodies.a.size", "missing"}},
       {"bodies: {a: {shape: bax, size: [1, 1, 1]}}", ":4: ", {"bodies.a.shape = bax", "did you mean box", "capsule"}},
