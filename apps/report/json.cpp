@@ -133,6 +133,29 @@ Json cuts_json(const RunSummary& s) {
 }
 }  // namespace
 
+namespace {
+Json distribution_json(const cosim::Distribution& d) { return {{"mean", d.mean}, {"p50", d.p50}, {"p95", d.p95}, {"max", d.max}}; }
+Json stages_json(const std::vector<StageReport>& stages) {
+  Json json = Json::object();
+  for (const StageReport& stage : stages) json[stage.name] = stage.ms;
+  return json;
+}
+Json phases_json(const RunSummary& s) {
+  Json list = Json::array();
+  for (const cosim::PhaseSummary& p : s.phases)
+    list.push_back({{"name", p.name},
+                    {"start_s", p.start},
+                    {"end_s", p.end},
+                    {"steps", p.steps},
+                    {"wall_s", p.wall},
+                    {"step_ms", distribution_json(p.step_ms)},
+                    {"newton_mean", p.newton_mean},
+                    {"effects_ms_per_step", stages_json(p.effects)},
+                    {"stages_ms_per_step", stages_json(p.stages)}});
+  return list;
+}
+}  // namespace
+
 Json report_json(const Provenance& provenance, const World& world, const cosim::RobotScene& robots, const RunSummary& s) {
   Json json = {{"status", s.status}};
   if (!s.failure.empty()) json["failure"] = s.failure;
@@ -148,7 +171,7 @@ Json report_json(const Provenance& provenance, const World& world, const cosim::
   json["sim_time_s"] = s.sim_time;
   json["wall_s"] = s.wall;
   json["real_time_factor"] = s.wall > 0 ? s.sim_time / s.wall : 0;
-  json["step_ms"] = {{"mean", s.step_ms.mean}, {"p50", s.step_ms.p50}, {"p95", s.step_ms.p95}, {"max", s.step_ms.max}};
+  json["step_ms"] = distribution_json(s.step_ms);
   json["newton"] = {{"mean", s.newton_mean}, {"max", s.newton_max}, {"failed_steps", s.failed_steps}};
   json["linear"] = {{"solver", s.linear_solver}, {"iterations_mean", s.linear_iterations_mean}};
   json["hessian_mode"] = to_text(world.setup.newton.hessian);
@@ -159,8 +182,8 @@ Json report_json(const Provenance& provenance, const World& world, const cosim::
   json["energy_drift"] = s.energy_drift;
   json["state_hash"] = s.state_hash;
   json["effects"] = effects_json(s);
-  json["stages_ms_per_step"] = Json::object();
-  for (const StageReport& stage : s.stages) json["stages_ms_per_step"][stage.name] = stage.ms;
+  json["stages_ms_per_step"] = stages_json(s.stages);
+  if (!s.phases.empty()) json["phases"] = phases_json(s);
   if (!world.setup.scene.blades.empty()) json["cuts"] = cuts_json(s);
   json["conditions"] = conditions_json(s);
   json["figures"] = Json::object();

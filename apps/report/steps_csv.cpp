@@ -5,11 +5,16 @@
 
 namespace tape::report {
 namespace {
-/// Visits (name, value) of every column; `row` may be empty when only names are wanted.
+std::string cell(Real value) { return tape::to_text(value); }
+std::string cell(const std::string& text) { return text; }
+
+/// Visits (name, number or text) of every column; `row` may be empty when only names are wanted.
 template <class F>
-void visit_columns(const World& world, const cosim::StepRow& row, const F& f) {
+void visit_columns(const World& world, const std::vector<Phase>& phases, const cosim::StepRow& row, const F& f) {
   const StepReport& r = row.report;
-  f("step", row.step), f("time_s", row.time), f("ms", r.wall_ms);
+  f("step", row.step), f("time_s", row.time);
+  if (!phases.empty()) f("phase", row.phase < 0 ? std::string() : phases[static_cast<std::size_t>(row.phase)].name);
+  f("ms", r.wall_ms);
   f("newton", r.newton), f("linear_iterations", r.linear_iterations), f("halvings", r.halvings), f("substeps", r.substeps);
   f("hessian_fallbacks", r.hessian_fallbacks), f("stop_error_estimate_m", r.stop_error_estimate), f("last_update_m", r.last_update);
   f("min_gap_m", r.min_gap), f("candidates", r.candidates), f("active_pairs", r.active_pairs), f("searches", r.searches);
@@ -62,15 +67,15 @@ void visit_columns(const World& world, const cosim::StepRow& row, const F& f) {
 }
 }  // namespace
 
-std::vector<std::string> step_columns(const World& world) {
+std::vector<std::string> step_columns(const World& world, const std::vector<Phase>& phases) {
   std::vector<std::string> names;
-  visit_columns(world, {}, [&](const std::string& name, Real) { names.push_back(name); });
+  visit_columns(world, phases, {}, [&](const std::string& name, const auto&) { names.push_back(name); });
   return names;
 }
 
-std::vector<std::string> step_cells(const World& world, const cosim::StepRow& row) {
+std::vector<std::string> step_cells(const World& world, const std::vector<Phase>& phases, const cosim::StepRow& row) {
   std::vector<std::string> cells;
-  visit_columns(world, row, [&](const std::string&, Real value) { cells.push_back(tape::to_text(value)); });
+  visit_columns(world, phases, row, [&](const std::string&, const auto& value) { cells.push_back(cell(value)); });
   return cells;
 }
 }  // namespace tape::report

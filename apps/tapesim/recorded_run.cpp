@@ -15,8 +15,11 @@ bool runs_on_cuda(Backend backend) { return backend == Backend::cuda || (backend
 
 cosim::RunLog simulate_into(RunFolder& folder, LoadedWorld& loaded, Stepper& stepper, State& state, int steps, const OnStep& on_step) {
   const int first = state.step;
-  cosim::RunOptions options{
-      .max_steps = steps, .record = loaded.input.run.record, .events = loaded.input.run.events, .goals = loaded.input.run.goals};
+  cosim::RunOptions options{.max_steps = steps,
+                            .record = loaded.input.run.record,
+                            .events = loaded.input.run.events,
+                            .goals = loaded.input.run.goals,
+                            .phases = loaded.input.run.phases};
   options.stop_asked = interrupted;
   options.on_step = [&](const State& now, const cosim::StepRow& row) {
     folder.add_step(row);

@@ -32,7 +32,7 @@ int render(const RenderArguments& arguments) {
   params.view = {color_of(arguments.color), !arguments.no_ground, arguments.track};
   params.video.width = arguments.width;
   params.video.height = arguments.height;
-  params.cameras = arguments.camera.empty() ? parse_cameras(recording.mesh().camera) : load_cameras(arguments.camera);
+  params.cameras = arguments.camera.empty() ? parse_cameras(recording.mesh().pictures) : load_cameras(arguments.camera);
   cosim::make_folder(out);
   remember_interrupts();
   for (int frame : arguments.stills) {

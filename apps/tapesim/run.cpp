@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include "apps/report/phase_table.hpp"
 #include "apps/report/table.hpp"
 #include "apps/tapesim/episode_recorder.hpp"
 #include "apps/tapesim/interrupt.hpp"
@@ -32,6 +33,7 @@ void print_summary(const cosim::RunSummary& s, const RunFolder& folder) {
              rounded(s.sim_time), rounded(s.wall), rounded(s.step_ms.mean), rounded(s.newton_mean),
              s.linear_solver.empty() ? "none" : s.linear_solver);
   if (!s.failure.empty()) fmt::print("failed at {}\n", s.failure);
+  if (!s.phases.empty()) fmt::print("{}", report::to_text(report::phase_table(s.phases)));
   for (const auto& [name, value] : s.figures) fmt::print("  {} = {}\n", name, rounded(value));
   for (const cosim::Condition& c : s.conditions)
     if (!c.met) fmt::print("  condition not met: {} = {} (required: {})\n", c.name, rounded(c.value), c.required);
@@ -90,14 +92,15 @@ int run(const RunArguments& arguments) {
   std::optional<EpisodeRecorder> recorder;
   if (!arguments.record.empty()) recorder.emplace(arguments.record, arguments.scene, loaded, *stepper, state);
   RunFolder folder(arguments.out.empty() ? "out/" + loaded.world.setup.scene.name : arguments.out, loaded.world, loaded.input.run.robots,
-                   state, camera_text(loaded.input.pictures.cameras));
+                   loaded.input.run.phases, state, camera_text(loaded.input.pictures.cameras));
   remember_interrupts();
   const int planned = cosim::planned_steps(loaded.world.setup.scene) - first_step;
   const cosim::RunLog log = [&] {
     Progress progress("run", arguments.steps < 0 ? planned : std::min(planned, arguments.steps));
     return simulate_into(folder, loaded, *stepper, state, arguments.steps, [&](const State& now, const cosim::StepRow& row) {
       if (recorder) recorder->add(now);
-      progress.update(now.step - first_step, fmt::format("t {:.3f} s, {:.1f} ms/step", now.time, row.report.wall_ms));
+      const std::string phase = row.phase < 0 ? "" : loaded.input.run.phases[static_cast<std::size_t>(row.phase)].name + ", ";
+      progress.update(now.step - first_step, fmt::format("{}t {:.3f} s, {:.1f} ms/step", phase, now.time, row.report.wall_ms));
     });
   }();
   const cosim::RunSummary summary = cosim::summarize(loaded.world, log, loaded.input.run.figures);

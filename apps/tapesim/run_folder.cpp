@@ -22,15 +22,23 @@ fs::path made(fs::path folder) {
 }
 }  // namespace
 
-RunFolder::RunFolder(fs::path folder, const World& world, const cosim::RobotScene& robots, const State& start, const std::string& camera)
-    : folder_(made(std::move(folder))), world_(&world), robots_(robots), camera_(camera), steps_(folder_ / "steps.csv") {
-  const std::string header = csv_line(report::step_columns(world));
+RunFolder::RunFolder(fs::path folder, const World& world, const cosim::RobotScene& robots, const std::vector<cosim::Phase>& phases,
+                     const State& start, const std::string& pictures)
+    : folder_(made(std::move(folder))),
+      world_(&world),
+      robots_(robots),
+      phases_(phases),
+      pictures_(pictures),
+      steps_(folder_ / "steps.csv") {
+  const std::string header = csv_line(report::step_columns(world, phases_));
   steps_.write(header);
   if (start.step > 0) keep_earlier_steps(header, start.step);
   if (start.step == 0 || !keep_earlier_states(start.step)) states_.emplace(folder_ / "state.h5", mesh());
 }
 
-cosim::RecordedMesh RunFolder::mesh() const { return cosim::RecordedMesh::of(*world_, robots_, camera_, settings_text(*world_, robots_)); }
+cosim::RecordedMesh RunFolder::mesh() const {
+  return cosim::RecordedMesh::of(*world_, robots_, phases_, pictures_, settings_text(*world_, robots_));
+}
 
 void RunFolder::keep_earlier_steps(const std::string& header, int step) {
   std::ifstream earlier(folder_ / "steps.csv");
@@ -48,7 +56,9 @@ bool RunFolder::keep_earlier_states(int step) {
   const auto same = [&](const cosim::RecordedMesh& m) { return m.triangles == now.triangles && m.rest == now.rest; };
   int last = 0;  // mesh of the state that the run goes on from
   while (last < earlier.meshes() && !same(earlier.mesh(last))) ++last;
-  if (last == earlier.meshes() || earlier.mesh().robots != now.robots) return false;
+  if (last == earlier.meshes() || earlier.mesh().robots != now.robots || earlier.mesh().grips != now.grips ||
+      earlier.mesh().phases != now.phases)
+    return false;
   states_.emplace(folder_ / "state.h5", last == 0 ? now : earlier.mesh());
   int written = 0;  // meshes that are started
   const auto go_to = [&](int mesh) {
@@ -67,11 +77,15 @@ bool RunFolder::keep_earlier_states(int step) {
 
 void RunFolder::start_mesh() { states_->start_mesh(mesh()); }
 
-void RunFolder::add_step(const cosim::StepRow& row) { steps_.write(csv_line(report::step_cells(*world_, row))); }
+void RunFolder::add_step(const cosim::StepRow& row) {
+  steps_.write(csv_line(report::step_cells(*world_, phases_, row)));
+  grip_force_ = row.report.grip_force;
+}
 
 void RunFolder::add_state(const State& state, std::vector<Real> contact_force, std::vector<cosim::RobotRecord> robots) {
   if (state.step <= last_recorded_) return;
-  states_->add(cosim::RecordedFrame::of(*world_, state, std::move(contact_force), std::move(robots)));
+  states_->add(cosim::RecordedFrame::of(*world_, state,
+                                        {std::move(contact_force), grip_force_, std::move(robots), phase_of(phases_, state, *world_)}));
   last_recorded_ = state.step;
 }
 

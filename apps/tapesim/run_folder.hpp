@@ -12,12 +12,13 @@ namespace tape::tapesim {
 /// was resumed into the folder it came from keeps what was written there up to the step it goes on from.
 class RunFolder {
  public:
-  /// @param camera  text of the scene's camera, for pictures made later  @throws InputError where the folder cannot be written in
-  RunFolder(std::filesystem::path folder, const World& world, const cosim::RobotScene& robots, const State& start,
-            const std::string& camera);
+  /// @param pictures  what the scene says of pictures, for those made later  @throws InputError where the folder cannot be written in
+  RunFolder(std::filesystem::path folder, const World& world, const cosim::RobotScene& robots, const std::vector<cosim::Phase>& phases,
+            const State& start, const std::string& pictures);
   /// A strip was cut.
   void start_mesh();
   void add_step(const cosim::StepRow& row);
+  /// The end of the step that was added last, or the start.
   void add_state(const State& state, std::vector<Real> contact_force, std::vector<cosim::RobotRecord> robots);
   /// Gives all files their names, and writes the snapshot.
   void commit(const State& state);
@@ -31,9 +32,11 @@ class RunFolder {
   std::filesystem::path folder_;
   const World* world_;
   cosim::RobotScene robots_;
-  std::string camera_;
+  std::vector<cosim::Phase> phases_;
+  std::string pictures_;
   cosim::TextFile steps_;
   std::optional<cosim::StateWriter> states_;
-  int last_recorded_ = -1;  // step
+  std::vector<Vec3> grip_force_;  // [grips] N at the end of the last step
+  int last_recorded_ = -1;        // step
 };
 }  // namespace tape::tapesim

@@ -4,12 +4,19 @@
 
 namespace cosim {
 RunInput read_run(SceneFile scene) {
-  RunInput input{
-      .file = std::move(scene), .setup = {}, .robots = {}, .events = {}, .goals = {}, .record = {}, .figures = {}, .roll_asset = {}};
+  RunInput input{.file = std::move(scene),
+                 .setup = {},
+                 .robots = {},
+                 .events = {},
+                 .goals = {},
+                 .phases = {},
+                 .record = {},
+                 .figures = {},
+                 .roll_asset = {}};
   const SceneFile& file = input.file;
   BothWorlds both = read_worlds(file);
   input.setup.scene = std::move(both.tape), input.robots = std::move(both.robots), input.events = std::move(both.events);
-  input.goals = std::move(both.goals);
+  input.goals = std::move(both.goals), input.phases = std::move(both.phases);
   std::vector<std::string> effects;
   for_each_effect([&]<class T>(std::type_identity<T>) {
     effects.emplace_back(T::name);

@@ -16,6 +16,7 @@ struct RunInput {
   RobotScene robots;
   std::vector<Event> events;  ///< that the script waits for
   std::vector<Goal> goals;    ///< conditions that the scene states
+  std::vector<Phase> phases;  ///< of the script
   RecordParams record;
   std::vector<std::string> figures;
   bool settle_roll = true;           ///< off: a roll starts as it is wound

@@ -38,13 +38,20 @@ bool cut(World& world, Stepper& stepper, State& state, EnergyLedger& ledger, Ste
 }
 }  // namespace
 
+int phase_of(const std::vector<Phase>& phases, const State& state, const World& world) {
+  const Real dt = world.setup.scene.time.dt;
+  return phase_at(phases, std::max(Real{0}, state.time - dt), state.events, dt);
+}
+
 int planned_steps(const Scene& scene) { return static_cast<int>(std::lround(scene.time.duration / scene.time.dt)); }
 
 RunLog simulate(World& world, Stepper& stepper, State& state, const RunOptions& options) {
-  const auto begin = std::chrono::steady_clock::now();
+  const auto wall = [begin = std::chrono::steady_clock::now()] {
+    return std::chrono::duration<Real>(std::chrono::steady_clock::now() - begin).count();
+  };
   const int planned = planned_steps(world.setup.scene);
   const int last = options.max_steps < 0 || options.max_steps > planned - state.step ? planned : state.step + options.max_steps;
-  RunLog log{.start = state, .events = options.events, .goals = options.goals};
+  RunLog log{.start = state, .events = options.events, .goals = options.goals, .phases = options.phases};
   const auto* coupled = dynamic_cast<const CoupledStepper*>(&stepper);  // none where there are no robots
   EnergyLedger ledger(world);
   RecordClock clock(options.record.rate, state.time);
@@ -67,17 +74,23 @@ RunLog simulate(World& world, Stepper& stepper, State& state, const RunOptions& 
     const EnergyLedger::Entry energy = ledger.after(state, report);
     std::vector<Real> goals;
     for (const Goal& goal : options.goals) goals.push_back(measure(goal.claim, world, state, report, joints));
-    log.rows.push_back({state.step, state.time, std::move(report), energy, std::move(goals)});
+    log.rows.push_back({.step = state.step,
+                        .time = state.time,
+                        .report = std::move(report),
+                        .energy = energy,
+                        .goals = std::move(goals),
+                        .phase = phase_of(options.phases, state, world)});
     if (cut(world, stepper, state, ledger, log.rows.back()) && options.on_cut) options.on_cut();
     if (options.on_step) options.on_step(state, log.rows.back());
     if (clock.due(state.time)) {
       record(log, world, state, options);
       recorded = state.step;
     }
+    log.rows.back().wall = wall();
   }
   if (recorded != state.step) record(log, world, state, options);
   log.end = state;
-  log.wall = std::chrono::duration<Real>(std::chrono::steady_clock::now() - begin).count();
+  log.wall = wall();
   return log;
 }
 }  // namespace cosim

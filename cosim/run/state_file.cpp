@@ -8,7 +8,7 @@
 
 namespace cosim {
 namespace {
-constexpr const char* kFormat = "tape states 5";
+constexpr const char* kFormat = "tape states 6";
 
 constexpr const char* kAbout =
     "SI units: m, s, kg, N, N m, rad. x: positions of the strips' vertices in the world. pose: of each body's frame B in the world, the "
@@ -20,7 +20,9 @@ constexpr const char* kAbout =
     "N m, N); links: of each link's frame in the world, in the order of attribute links.NAME, the position, then the quaternion w x y z; "
     "wrench: of the "
     "tape side on each link, force, then torque about the link's origin, in world axes, mean over the step. time: s at the end of step. "
-    "mesh: how often strips had been cut; after the k-th cut the arrays of vertices and triangles go on in meshK/.";
+    "mesh: how often strips had been cut; after the k-th cut the arrays of vertices and triangles go on in meshK/. grip_force: of each "
+    "grip in the order of attribute grips, on what it holds, at the end "
+    "of the step. phase: of the step, counted from 0 in attribute phases; -1: none.";
 
 /// Where the arrays stand of what a strip has become after k cuts.
 std::string mesh_folder(int k) { return k == 0 ? "" : "mesh" + std::to_string(k) + "/"; }
@@ -100,13 +102,15 @@ bool consistent(const RecordedFrame& frame, const RecordedMesh& mesh) {
   const auto known = [](TapePart part) { return part >= TapePart::free && part <= TapePart::cluster; };
   return std::ssize(frame.x) == mesh.strip_vertices && std::ssize(frame.bodies) == body_count(mesh) &&
          frame.contact_force.size() == mesh.body.size() && frame.engagement.size() == frame.x.size() &&
-         frame.part.size() == frame.x.size() && std::all_of(frame.part.begin(), frame.part.end(), known) &&
+         frame.part.size() == frame.x.size() && frame.grip_force.size() == mesh.grips.size() && frame.phase >= -1 &&
+         frame.phase < std::ssize(mesh.phases) && std::all_of(frame.part.begin(), frame.part.end(), known) &&
          std::all_of(frame.x.begin(), frame.x.end(), finite) &&
          std::all_of(frame.bodies.begin(), frame.bodies.end(), [&](const Pose& X) { return finite(X.rotation) && finite(X.position); });
 }
 }  // namespace
 
-RecordedMesh RecordedMesh::of(const World& world, const RobotScene& robots, std::string camera, std::string settings) {
+RecordedMesh RecordedMesh::of(const World& world, const RobotScene& robots, const std::vector<Phase>& phases, std::string pictures,
+                              std::string settings) {
   const Assembly& a = world.assembly;
   const Scene& scene = world.setup.scene;
   const auto nv = static_cast<std::size_t>(a.surface_vertices);
@@ -116,9 +120,13 @@ RecordedMesh RecordedMesh::of(const World& world, const RobotScene& robots, std:
                     .rest = {},
                     .body = {},
                     .local = {},
-                    .camera = std::move(camera),
+                    .pictures = std::move(pictures),
                     .robots = {},
-                    .settings = std::move(settings)};
+                    .settings = std::move(settings),
+                    .grips = {},
+                    .phases = {}};
+  for (const Grip& grip : scene.grips) mesh.grips.push_back(grip.name);
+  for (const Phase& phase : phases) mesh.phases.push_back(phase.name);
   for (const RobotPart& part : robots.robots) {
     RecordedRobot& robot = mesh.robots.emplace_back(RecordedRobot{part.name, {}, {}});
     for (const robot::Joint& joint : part.model->joints) robot.joints.push_back(joint.name);
@@ -146,18 +154,21 @@ RecordedMesh RecordedMesh::of(const World& world, const RobotScene& robots, std:
   return mesh;
 }
 
-RecordedFrame RecordedFrame::of(const World& world, const State& state, std::vector<Real> contact_force, std::vector<RobotRecord> robots) {
+RecordedFrame RecordedFrame::of(const World& world, const State& state, StepRecord step) {
   RecordedFrame frame{.mesh = 0,
                       .step = state.step,
                       .time = state.time,
                       .x = state.x,
                       .bodies = {},
-                      .contact_force = std::move(contact_force),
+                      .contact_force = std::move(step.contact_force),
                       .engagement = vertex_engagement(world, state),
                       .part = tape_parts(world, state),
-                      .robots = std::move(robots)};
+                      .robots = std::move(step.robots),
+                      .grip_force = std::move(step.grip_force),
+                      .phase = step.phase};
   for (int b = 0; b < world.first_cluster(); ++b) frame.bodies.push_back(state.bodies[static_cast<std::size_t>(b)].pose);
   frame.contact_force.resize(static_cast<std::size_t>(world.assembly.surface_vertices), 0);
+  frame.grip_force.resize(world.setup.scene.grips.size(), Vec3::Zero());
   return frame;
 }
 
@@ -171,9 +182,11 @@ std::vector<Vec3> vertex_positions(const RecordedMesh& mesh, const RecordedFrame
 StateWriter::StateWriter(const std::filesystem::path& name, const RecordedMesh& mesh) : file_(name) {
   file_.write_text("format", kFormat);
   file_.write_text("scene", mesh.scene);
-  file_.write_text("camera", mesh.camera);
+  file_.write_text("pictures", mesh.pictures);
   file_.write_text("about", kAbout);
   file_.write_text("settings", mesh.settings);
+  file_.write_text("grips", joined_lines(mesh.grips));
+  file_.write_text("phases", joined_lines(mesh.phases));
   for (const RecordedRobot& robot : mesh.robots) {
     robots_.push_back(robot.name);
     file_.write_text("joints." + robot.name, joined_lines(robot.joints));
@@ -217,6 +230,8 @@ void StateWriter::add(const RecordedFrame& frame) {
   file_.append("mesh", std::vector<int>{mesh_}, {1});
   file_.append("step", std::vector<int>{frame.step}, {1});
   file_.append("time", std::vector<double>{frame.time}, {1});
+  file_.append("phase", std::vector<int>{frame.phase}, {1});
+  if (!frame.grip_force.empty()) file_.append("grip_force", flat<double>(frame.grip_force), {frame.grip_force.size(), 3});
   if (!frame.x.empty()) file_.append(folder + "x", flat<double>(frame.x), {frame.x.size(), 3});
   if (!poses.empty()) file_.append("pose", poses, {frame.bodies.size(), 12});
   const auto append = [&](const char* name, const std::vector<Real>& values) {
@@ -262,8 +277,10 @@ void StateReader::read_mesh() {
   const std::string folder = mesh_folder(meshes());
   RecordedMesh mesh;
   mesh.scene = file_.read_text("scene");
-  mesh.camera = file_.read_text("camera");
+  mesh.pictures = file_.read_text("pictures");
   mesh.settings = file_.read_text("settings");
+  mesh.grips = split(file_.read_text("grips"));
+  mesh.phases = split(file_.read_text("phases"));
   for (const std::string& robot : split(file_.read_text("robots")))
     mesh.robots.push_back({robot, split(file_.read_text("joints." + robot)), split(file_.read_text("links." + robot))});
   mesh.objects = read_objects(file_, folder);
@@ -307,7 +324,9 @@ RecordedFrame StateReader::frame(int i) const {
   frame.mesh = mesh_of_[static_cast<std::size_t>(i)];
   frame.step = static_cast<int>(file_.read_row("step", i)[0]);
   frame.time = file_.read_row("time", i)[0];
+  frame.phase = static_cast<int>(file_.read_row("phase", i)[0]);
   const RecordedMesh& of = mesh(frame.mesh);
+  if (!of.grips.empty()) frame.grip_force = unflat<Vec3>(file_.read_row("grip_force", i));
   const std::string folder = mesh_folder(frame.mesh);
   const int row = i - static_cast<int>(std::ranges::lower_bound(mesh_of_, frame.mesh) - mesh_of_.begin());
   for (const RecordedRobot& robot : of.robots) frame.robots.push_back(robot_at(robot, i));

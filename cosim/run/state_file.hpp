@@ -5,6 +5,7 @@
 
 #include "cosim/exchange/exchange.hpp"
 #include "cosim/run/hdf5_file.hpp"
+#include "cosim/scene/phase.hpp"
 #include "tape/step/reduce.hpp"
 
 namespace cosim {
@@ -30,11 +31,21 @@ struct RecordedMesh {
   std::vector<int> body;    ///< [nv] body that carries the vertex, -1: a strip
   std::vector<Vec3> local;  ///< [nv] m, in frame B; zero on strips
   int strip_vertices = 0;   ///< the first ones
-  std::string camera;       ///< `camera` section of the scene, as YAML text; may be empty
+  std::string pictures;     ///< what the scene says of pictures (camera, video), as YAML text; may be empty
   std::vector<RecordedRobot> robots;
-  std::string settings;  ///< of the run and the version of the program, as text; may be empty
+  std::string settings;             ///< of the run and the version of the program, as text; may be empty
+  std::vector<std::string> grips;   ///< their names
+  std::vector<std::string> phases;  ///< of the script, their names
 
-  static RecordedMesh of(const World& world, const RobotScene& robots, std::string camera, std::string settings);
+  static RecordedMesh of(const World& world, const RobotScene& robots, const std::vector<Phase>& phases, std::string pictures,
+                         std::string settings);
+};
+/// What is known of the step that a state is the end of, and not held by that.
+struct StepRecord {
+  std::vector<Real> contact_force = {};  ///< [nv] N; shorter: zero on the rest
+  std::vector<Vec3> grip_force = {};     ///< [grips] N on what they hold; shorter: zero on the rest
+  std::vector<RobotRecord> robots = {};
+  int phase = -1;  ///< -1: none has begun
 };
 struct RecordedFrame {
   int mesh = 0;  ///< of the recording's meshes
@@ -46,8 +57,10 @@ struct RecordedFrame {
   std::vector<Real> engagement;     ///< [strip vertices] what adhesion is left (vertex_engagement), kept to 7 digits
   std::vector<TapePart> part;       ///< [strip vertices]
   std::vector<RobotRecord> robots;
+  std::vector<Vec3> grip_force;  ///< [grips] N on what they hold
+  int phase = -1;                ///< of the recording's phases; -1: none has begun
 
-  static RecordedFrame of(const World& world, const State& state, std::vector<Real> contact_force, std::vector<RobotRecord> robots);
+  static RecordedFrame of(const World& world, const State& state, StepRecord step);
 };
 /// All vertices [nv] m of a frame.
 std::vector<Vec3> vertex_positions(const RecordedMesh& mesh, const RecordedFrame& frame);
@@ -56,7 +69,8 @@ std::vector<Vec3> vertex_positions(const RecordedMesh& mesh, const RecordedFrame
 /// a strip), film [n,2] (E h/(1 - nu^2) [N/m] and nu of a strip); and per frame: step, time [s], x [strip vertices,3] m, pose [bodies,12]
 /// (rotation row by row, position), contact_force [nv] N, engagement [strip vertices], part [strip vertices] (0 free, 1 collar, 2 cluster),
 /// mesh: after the k-th cut all arrays of vertices and triangles go on in meshK/; of each robot in robots/NAME/: position, velocity,
-/// command, effort [joints], links [links,7] (position, quaternion w x y z), wrench [links,6]. Attribute `about` says all this, with units.
+/// command, effort [joints], links [links,7] (position, quaternion w x y z), wrench [links,6]; grip_force [grips,3] N; phase: of the
+/// script, which attribute `phases` names. Attribute `about` says all this, with units.
 class StateWriter {
  public:
   StateWriter(const std::filesystem::path& name, const RecordedMesh& mesh);

@@ -12,6 +12,17 @@ struct Distribution {
 /// p50 and p95 by the nearest rank.
 Distribution distribution(std::vector<Real> values);
 
+/// What the steps of a phase cost.
+struct PhaseSummary {
+  std::string name;         ///< empty: before the first phase
+  Real start = 0, end = 0;  ///< [s] of its steps in this call
+  int steps = 0;
+  Real wall = 0;  ///< [s]
+  Distribution step_ms;
+  Real newton_mean = 0;
+  std::vector<StageReport> effects, stages;  ///< mean over its steps
+};
+
 struct EffectSummary {
   PlanLine plan;
   Real ms_per_step = 0;
@@ -42,6 +53,7 @@ struct RunSummary {
   std::vector<Condition> conditions;
   bool fell_short = false;  ///< came to the end of the scene without meeting what that states
   FigureValues figures;
+  std::vector<PhaseSummary> phases;  ///< that had steps in this call; none where the script names none
 };
 /// @param figures  names that the scene asks for
 RunSummary summarize(const World& world, const RunLog& log, const std::vector<std::string>& figures);

@@ -40,10 +40,10 @@ class SceneReader {
     model();
     for (const Reader& entry : file_["cutting"]["blades"].items()) blade(entry);
     for (const Reader& entry : file_["axles"].items()) axle(entry);
-    std::vector<Event> events = read_script(file_, meshes_, scene_, robots_);
+    Script script = read_script(file_, meshes_, scene_, robots_);
     std::vector<Goal> goals = read_goals(file_, scene_, robots_);
     if (scene_.strips.empty() && scene_.bodies.empty()) file_.root().fail("there is nothing to simulate: neither a strip nor a body");
-    return {std::move(scene_), std::move(robots_), std::move(events), std::move(goals)};
+    return {std::move(scene_), std::move(robots_), std::move(script.events), std::move(goals), std::move(script.phases)};
   }
 
  private:

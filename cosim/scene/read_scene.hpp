@@ -2,6 +2,7 @@
 #include "cosim/exchange/robots.hpp"
 #include "cosim/scene/event.hpp"
 #include "cosim/scene/goal.hpp"
+#include "cosim/scene/phase.hpp"
 #include "cosim/scene/scene_file.hpp"
 #include "tape/model/scene.hpp"
 
@@ -11,6 +12,7 @@ struct BothWorlds {
   RobotScene robots;          ///< whose links are bodies of the other
   std::vector<Event> events;  ///< that the script waits for
   std::vector<Goal> goals;    ///< conditions that it states
+  std::vector<Phase> phases;  ///< of the script
 };
 /// Everything of a scene file that these hold: scene, film, time, contact, gravity, seed, strip or strips, roll, bodies, robots, physics,
 /// exchange, materials, interfaces, axles, script, conditions. README.md describes them.

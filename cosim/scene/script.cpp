@@ -1,6 +1,7 @@
 #include "cosim/scene/script.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "cosim/scene/pose.hpp"
@@ -31,6 +32,8 @@ class Compiler {
       move(entry, start);
     } else if (entry["release"]) {
       release(entry, start);
+    } else if (const Reader name = entry["phase"]) {
+      phase(name, start);
     } else if (entry["robot"]) {
       go_on(entry, start, add_robot_motion(entry, file_, start, nominal(start), nominal_times(), robots_));
     } else if (const Reader until = entry["wait_until"]) {
@@ -38,10 +41,10 @@ class Compiler {
     } else if (const Reader wait = entry["wait"]) {
       now_ = {start.time + wait.number(kTime, "s"), start.after};
     } else {
-      entry.fail("must hold one of grip, move, release, robot, wait, wait_until");
+      entry.fail("must hold one of grip, move, phase, release, robot, wait, wait_until");
     }
   }
-  std::vector<Event> events() && { return std::move(events_); }
+  Script script() && { return {std::move(events_), std::move(phases_)}; }
 
  private:
   /// When each event happens if none does before its time is over.
@@ -103,6 +106,18 @@ class Compiler {
 
   void release(const Reader& entry, const Moment& start) {
     held(entry["release"], start).end = start;
+    now_ = start;
+  }
+
+  void phase(const Reader& entry, const Moment& start) {
+    const std::string name = entry.text();
+    const auto plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-'; };
+    if (name.empty() || !std::isalpha(static_cast<unsigned char>(name[0])) || !std::ranges::all_of(name, plain))
+      entry.fail("the name of a phase, which files bear, starts with a letter (allowed after it: letters, digits, _, -)");
+    if (std::ranges::find(phases_, name, &Phase::name) != phases_.end()) entry.fail("there is a phase of this name already");
+    if (!phases_.empty() && nominal(start) < nominal(phases_.back().start))
+      entry.fail("begins before the phase ahead of it, " + phases_.back().name);
+    phases_.push_back({name, start});
     now_ = start;
   }
 
@@ -191,14 +206,15 @@ class Compiler {
   RobotScene& robots_;
   Moment now_;
   std::vector<Event> events_;
+  std::vector<Phase> phases_;
 };
 }  // namespace
 
-std::vector<Event> read_script(const SceneFile& file, const std::vector<tape::StripMesh>& meshes, tape::Scene& scene, RobotScene& robots) {
+Script read_script(const SceneFile& file, const std::vector<tape::StripMesh>& meshes, tape::Scene& scene, RobotScene& robots) {
   Compiler compiler(file, meshes, scene, robots);
   for (const Reader& entry : file["script"].items()) compiler.entry(entry);
-  std::vector<Event> events = std::move(compiler).events();
-  scene.events = static_cast<int>(events.size());
-  return events;
+  Script script = std::move(compiler).script();
+  scene.events = static_cast<int>(script.events.size());
+  return script;
 }
 }  // namespace cosim

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "cosim/run/state_file.hpp"
 #include "tape/step/stepper.hpp"
@@ -133,6 +134,65 @@ TEST_F(Run, ResumedEndsInTheStateAndTheFilesOfAnUninterruptedOne) {
   EXPECT_EQ(report("parts")["resumed_from_step"], 5);
   const std::string steps = read(folder / "parts" / "steps.csv");
   EXPECT_EQ(std::count(steps.begin(), steps.end(), '\n'), 1 + 12);
+}
+/// The tip falls below 1 mm within a few steps, when nobody has said; so many later another phase begins.
+TEST_F(Run, ResumedAcrossPhasesKeepsThemToTheStep) {
+  const std::string phases =
+      "  - {phase: fall}\n  - {wait_until: {height: tape.tip, below: 0.001}, timeout: 1}\n  - {wait: 0.02}\n  - {phase: rest}\n";
+  const std::string text = kScene;
+  const std::size_t record = text.find("record:");
+  scene = folder.file("phases.yaml", text.substr(0, record) + phases + text.substr(record));
+  ASSERT_EQ(run("whole").exit_code, 0);
+  const std::string steps = read(folder / "whole" / "steps.csv");
+  EXPECT_THAT(steps, testing::StartsWith("step,time_s,phase,ms,"));
+  const auto phase_of_rows = [](const std::string& csv) {
+    std::vector<std::string> names;
+    std::istringstream lines(csv);
+    std::string line;
+    for (std::getline(lines, line); std::getline(lines, line);) {
+      const std::size_t from = line.find(',', line.find(',') + 1) + 1;
+      names.push_back(line.substr(from, line.find(',', from) - from));
+    }
+    return names;
+  };
+  const std::vector<std::string> names = phase_of_rows(steps);
+  const auto falling = static_cast<int>(std::ranges::count(names, "fall"));
+  ASSERT_GT(falling, 3);
+  ASSERT_LT(falling, 12);
+  EXPECT_EQ(std::ranges::count(names, "rest"), 12 - falling);
+  for (const int stop : {falling - 2, falling - 1, falling, falling + 1}) {
+    const std::string out = "parts" + std::to_string(stop);
+    ASSERT_EQ(run(out, {"--steps", std::to_string(stop)}).exit_code, 0);
+    ASSERT_EQ(run(out, {"--resume", (folder / out / "snapshot.h5").string()}).exit_code, 0);
+    EXPECT_EQ(phase_of_rows(read(folder / out / "steps.csv")), names) << "stopped after step " << stop;
+    EXPECT_EQ(report(out)["state_hash"], report("whole")["state_hash"]);
+    const cosim::StateReader a(folder / "whole" / "state.h5"), b(folder / out / "state.h5");
+    EXPECT_EQ(a.mesh().phases, b.mesh().phases);
+    for (int i = 0, k = 0; i < a.frames(); ++i, ++k) {
+      while (b.frame(k).step < a.frame(i).step) ++k;  // the state that it stopped at is recorded, too
+      EXPECT_EQ(a.frame(i).phase, b.frame(k).phase) << "step " << a.frame(i).step;
+    }
+  }
+}
+TEST_F(Run, ReportsWhatEachPhaseCost) {
+  scene = folder.file("phases.yaml", std::string(kScene) + "# end\n");
+  const Outcome outcome = run("a", {"--set", "script=[{phase: fall}, {wait: 0.05}, {phase: rest}]"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const json phases = report("a")["phases"];
+  ASSERT_EQ(phases.size(), 2u);
+  for (const char* key :
+       {"name", "start_s", "end_s", "steps", "wall_s", "step_ms", "newton_mean", "effects_ms_per_step", "stages_ms_per_step"})
+    EXPECT_TRUE(phases[0].contains(key)) << key;
+  EXPECT_EQ(phases[0]["name"], "fall");
+  EXPECT_EQ(phases[0]["steps"], 5);
+  EXPECT_DOUBLE_EQ(phases[0]["end_s"], 0.05);
+  EXPECT_EQ(phases[1]["name"], "rest");
+  EXPECT_EQ(phases[1]["steps"], 7);
+  EXPECT_TRUE(phases[1]["effects_ms_per_step"].contains("membrane"));
+  EXPECT_TRUE(phases[1]["stages_ms_per_step"].contains("broad_phase"));
+  EXPECT_THAT(outcome.out, testing::AllOf(HasSubstr("ms/step"), HasSubstr("\nfall"), HasSubstr("\nrest")));
+  ASSERT_EQ(run("b", {"--steps", "1"}).exit_code, 0);
+  EXPECT_FALSE(report("b").contains("phases")) << "of a script without phases";
 }
 TEST_F(BadInput, ASnapshotGoesOnOnlyWithItsTimeStep) {
   ASSERT_EQ(run("a", {"--steps", "6"}).exit_code, 0);

@@ -102,6 +102,35 @@ TEST(Simulate, StopsBetweenStepsWhenAsked) {
   EXPECT_TRUE(log.interrupted);
   EXPECT_EQ(log.rows.size(), 2u);
 }
+/// Step n takes 10 n s and n Newton iterations, a tenth of it in the search; looking for cuts adds what it really takes.
+TEST(Phases, EachIsSummedUpOverItsOwnSteps) {
+  const World world = strip_world();
+  const auto costs = [](State& state, StepReport& report) {
+    const Real ms = 1e4 * (state.step + 1);
+    report.wall_ms = ms, report.newton = state.step + 1;
+    report.stages = {{"broad_phase", ms / 10}};
+    report.effects = {{.name = "membrane", .ms = ms / 2}};
+  };
+  const RunLog log = run(world, costs, {.phases = {{"lift", 0.02}, {"hold", 0.05}, {"never", 7}}});
+  const RunSummary summary = summarize(world, log, {});
+  ASSERT_EQ(summary.phases.size(), 3u) << "of the steps before the first, and the two that were reached";
+  const PhaseSummary &before = summary.phases[0], &lift = summary.phases[1], &hold = summary.phases[2];
+  EXPECT_EQ(before.name, "");
+  EXPECT_EQ(before.steps, 2);
+  EXPECT_EQ(lift.name, "lift");
+  EXPECT_EQ(lift.steps, 3);
+  EXPECT_NEAR(lift.start, 0.02, 1e-12);
+  EXPECT_NEAR(lift.end, 0.05, 1e-12);
+  EXPECT_NEAR(lift.step_ms.mean, 4e4, 500) << "steps 3, 4 and 5";
+  EXPECT_NEAR(lift.step_ms.max, 5e4, 500);
+  EXPECT_DOUBLE_EQ(lift.newton_mean, 4);
+  EXPECT_NEAR(lift.stages.at(0).ms, 4e3, 1e-9);
+  EXPECT_NEAR(lift.effects.at(0).ms, 2e4, 1e-9);
+  EXPECT_EQ(hold.steps, 5);
+  EXPECT_NEAR(hold.step_ms.p50, 8e4, 500);
+  EXPECT_NEAR(before.wall + lift.wall + hold.wall, log.rows.back().wall, 1e-12);
+  EXPECT_TRUE(summarize(world, run(world, costs), {}).phases.empty()) << "a script without phases";
+}
 TEST(EnergyLedger, AGripThatPullsOnSomethingFixedStoresAllItsWork) {
   // The spring's end stays where it is, so V = k/2 (0.1 t)^2, and the work of the grip is what V gains.
   const World world = strip_world();

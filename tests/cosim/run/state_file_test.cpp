@@ -21,9 +21,11 @@ const RecordedMesh kMesh{.scene = "two triangles",
                          .body = {-1, -1, -1, 0, 0, 0},
                          .local = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
                          .strip_vertices = 3,
-                         .camera = "fov: 30\n",
+                         .pictures = "fov: 30\n",
                          .robots = {{"arm", {"shoulder", "elbow"}, {"base", "upper", "lower"}}, {"stand", {}, {"post"}}},
-                         .settings = "{}"};
+                         .settings = "{}",
+                         .grips = {"pull", "tie"},
+                         .phases = {"close", "press"}};
 /// A robot whose numbers tell each other apart.
 cosim::RobotRecord robot_record(int joints, int links, double first) {
   const auto count = [&](double from) { return robot::VecX(robot::VecX::LinSpaced(joints, from, from + joints - 1)); };
@@ -46,7 +48,9 @@ RecordedFrame frame(int step) {
           .contact_force = {0.5, 1, 0, 0, 0, 0.25},
           .engagement = {0, 0.5, 1},
           .part = {tape::TapePart::free, tape::TapePart::collar, tape::TapePart::cluster},
-          .robots = {robot_record(2, 3, step), robot_record(0, 1, 7)}};
+          .robots = {robot_record(2, 3, step), robot_record(0, 1, 7)},
+          .grip_force = {Vec3(1, 2, step), Vec3(0, 0, -3)},
+          .phase = step > 0 ? 1 : -1};
 }
 
 class StateFile : public testing::Test {
@@ -68,7 +72,9 @@ TEST_F(StateFile, ReadsBackWhatWasWritten) {
   const StateReader reader(file);
   ASSERT_EQ(reader.frames(), 3);
   EXPECT_EQ(reader.mesh().scene, kMesh.scene);
-  EXPECT_EQ(reader.mesh().camera, kMesh.camera);
+  EXPECT_EQ(reader.mesh().pictures, kMesh.pictures);
+  EXPECT_EQ(reader.mesh().grips, kMesh.grips);
+  EXPECT_EQ(reader.mesh().phases, kMesh.phases);
   EXPECT_EQ(reader.mesh().triangles, kMesh.triangles);
   EXPECT_EQ(reader.mesh().objects[1].name, "box");
   EXPECT_EQ(reader.mesh().objects[1].material, "wood");
@@ -80,6 +86,9 @@ TEST_F(StateFile, ReadsBackWhatWasWritten) {
   EXPECT_EQ(read.contact_force, written.contact_force);
   EXPECT_EQ(read.engagement, written.engagement);
   EXPECT_EQ(read.part, written.part);
+  EXPECT_EQ(read.grip_force, written.grip_force);
+  EXPECT_EQ(read.phase, 1);
+  EXPECT_EQ(reader.frame(0).phase, -1);
   EXPECT_EQ(reader.mesh().robots, kMesh.robots);
   EXPECT_EQ(reader.mesh().settings, "{}");
   ASSERT_EQ(read.robots.size(), 2u);
@@ -142,6 +151,9 @@ TEST_F(StateFile, ArraysThatDoNotFitTogetherAreRefused) {
   RecordedFrame short_frame = frame(0), not_finite = frame(0);
   short_frame.x.pop_back();
   not_finite.x[1].y() = std::numeric_limits<Real>::quiet_NaN();
+  RecordedFrame of_no_phase = frame(0);
+  of_no_phase.phase = 2;
+  EXPECT_TRUE(refused(kMesh, of_no_phase));
   EXPECT_TRUE(refused(kMesh, short_frame));
   EXPECT_TRUE(refused(kMesh, not_finite));
 }

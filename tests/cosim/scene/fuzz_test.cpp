@@ -202,8 +202,8 @@ void fuzz_recordings(Length length) {
   const tape::World world =
       tape::World::build(read_run(SceneFile::load(fs::path(TAPE_SOURCE_DIR) / "data" / "scenes" / "drape.yaml")).setup);
   {
-    StateWriter writer(folder / "state.h5", RecordedMesh::of(world, {}, "fov: 30\n", ""));
-    for (int i = 0; i < 3; ++i) writer.add(RecordedFrame::of(world, tape::State::start(world), {}, {}));
+    StateWriter writer(folder / "state.h5", RecordedMesh::of(world, {}, {}, "fov: 30\n", ""));
+    for (int i = 0; i < 3; ++i) writer.add(RecordedFrame::of(world, tape::State::start(world), {}));
     writer.commit();
   }
   const std::string whole = read_whole_file(folder / "state.h5", "test");

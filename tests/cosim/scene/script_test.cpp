@@ -71,6 +71,38 @@ TEST(Script, WaitsAreRefusedWithTheirReason) {
   EXPECT_NE(refusal(script("{wait_until: {forc: pull, above: 1}, timeout: 1}")).find("one of force, height"), std::string::npos);
   EXPECT_NE(refusal(script("{wait_until: {distance: tape, below: 1}, timeout: 1}")).find("distance"), std::string::npos);
 }
+TEST(Script, APhaseBeginsWhereTheEntriesAheadOfItEndAndTakesNoTime) {
+  const BothWorlds both = read(kStrip + R"(script:
+  - {phase: lift}
+  - {grip: tape.tip, as: pull}
+  - {move: pull, by: [0, 0, 0.1], duration: 2}
+  - {phase: hold}
+  - {wait_until: {force: pull, above: 2}, timeout: 5}
+  - {wait: 0.25}
+  - {phase: let_go}
+  - {release: pull}
+  - {phase: end, at: 8}
+)");
+  ASSERT_EQ(both.phases.size(), 4u);
+  EXPECT_EQ(both.phases[0].name, "lift");
+  EXPECT_EQ(both.phases[0].start, tape::Moment(0));
+  EXPECT_EQ(both.phases[1].start, tape::Moment(2));
+  EXPECT_EQ(both.phases[2].start, tape::Moment(0.25, 0)) << "a quarter of a second after the wait, whenever that ends";
+  EXPECT_EQ(both.phases[3].start, tape::Moment(8));
+  EXPECT_EQ(both.tape.grips[0].end, tape::Moment(0.25, 0)) << "the entry after a phase starts where it does";
+}
+TEST(Phases, AStepIsOfTheLastOneThatHasBegunWhenItStarts) {
+  const std::vector<Phase> phases{{"a", 0.1}, {"b", {0.2, 0}}, {"c", {0, 1}}};
+  const auto at = [&](double start, const std::vector<double>& events) { return phase_at(phases, start, events, 0.01); };
+  EXPECT_EQ(at(0, {kNever, kNever}), -1);
+  EXPECT_EQ(at(0.09, {kNever, kNever}), -1);
+  EXPECT_EQ(at(0.1 - 1e-12, {kNever, kNever}), 0) << "round-off of a sum of steps";
+  EXPECT_EQ(at(5, {kNever, kNever}), 0);
+  EXPECT_EQ(at(0.69, {0.5, kNever}), 0);
+  EXPECT_EQ(at(0.7, {0.5, kNever}), 1);
+  EXPECT_EQ(at(0.7, {0.5, 0.6}), 2);
+  EXPECT_EQ(phase_at({}, 1, {}, 0.01), -1);
+}
 
 TEST(Script, JointsMayBeNamedByAPattern) {
   const RobotPart arm = read(kArm).robots.robots[0];
