@@ -77,7 +77,7 @@ EpisodeRecorder::EpisodeRecorder(const fs::path& file, const SceneArguments& sce
     episode_.landmarks.push_back({.camera = pinhole->name, .body = "hub", .width = c.width, .height = c.height});
   }
   if (views_.empty()) throw InputError("--record: the scene has no calibrated camera, one with fx, fy, cx, cy");
-  const auto mesh = cosim::RecordedMesh::of(world_, loaded.input.run.robots, "", "");
+  const auto mesh = cosim::RecordedMesh::of(world_, loaded.input.run.robots, loaded.input.run.phases, "", "");
   for (const cosim::RecordedObject& object : mesh.objects) {
     if (object.name == "hub") continue;
     auto& triangles = object.strip ? obstacles_.tapes : obstacles_.bodies;
