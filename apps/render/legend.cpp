@@ -3,19 +3,11 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "apps/render/panel.hpp"
+
 namespace tape::render {
 namespace {
-const Vec3 kInk(0.13, 0.14, 0.16), kPaper(1, 1, 1);
-constexpr Real kPaperOpacity = 0.78;
-
-struct Box {
-  int x, y, width, height;  // [px]
-};
-
-void fill(Picture& picture, const Box& box, const Vec3& srgb, Real opacity) {
-  for (int y = box.y; y < box.y + box.height; ++y)
-    for (int x = box.x; x < box.x + box.width; ++x) blend(picture, x, y, srgb, opacity);
-}
+const Vec3 kAlarm(0.80, 0.10, 0.14);
 
 std::string number(Real value) {
   char text[32];
@@ -74,7 +66,13 @@ void draw_legends(Picture& picture, const Font& font, const std::vector<Legend>&
 void draw_caption(Picture& picture, const Font& font, const std::string& caption) {
   if (caption.empty()) return;
   const int pad = font.line_height() / 2;
-  fill(picture, {pad, pad, font.width(caption) + 2 * pad, font.line_height() + pad}, kPaper, kPaperOpacity);
+  fill(picture, {pad, pad, font.width(caption) + 2 * pad, caption_height(font)}, kPaper, kPaperOpacity);
   font.draw(picture, 2 * pad, pad + pad / 2, caption, kInk);
+}
+
+void draw_flash(Picture& picture, const Font& font, const std::string& word) {
+  const int pad = font.line_height() / 2, width = font.width(word) + 4 * pad, left = (picture.width - width) / 2;
+  fill(picture, {left, pad, width, caption_height(font)}, kAlarm, 1);
+  font.draw(picture, left + 2 * pad, pad + pad / 2, word, kPaper);
 }
 }  // namespace tape::render

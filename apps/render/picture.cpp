@@ -9,13 +9,19 @@
 #include "tape/core/error.hpp"
 
 namespace tape::render {
+void paste(Picture& onto, const Picture& part, int x, int y) {
+  const int left = std::max(0, -x), right = std::min(part.width, onto.width - x);
+  for (int row = std::max(0, -y); row < std::min(part.height, onto.height - y) && left < right; ++row)
+    std::copy_n(part.at(left, row), 3 * (right - left), onto.at(x + left, y + row));
+}
+
 Picture side_by_side(const std::vector<Picture>& pictures) {
   int width = 0;
   for (const Picture& picture : pictures) width += picture.width;
   Picture joined(width, pictures.empty() ? 0 : pictures[0].height);
   int left = 0;
   for (const Picture& picture : pictures) {
-    for (int y = 0; y < joined.height; ++y) std::copy_n(picture.at(0, y), 3 * picture.width, joined.at(left, y));
+    paste(joined, picture, left, 0);
     left += picture.width;
   }
   return joined;

@@ -18,6 +18,8 @@ struct Picture {
   const std::uint8_t* at(int x, int y) const { return const_cast<Picture*>(this)->at(x, y); }
 };
 
+/// Puts a picture over a part of another, its upper left corner at (x, y); what lies outside is cut off.
+void paste(Picture& onto, const Picture& part, int x, int y);
 /// Pictures of equal height, from left to right.
 Picture side_by_side(const std::vector<Picture>& pictures);
 

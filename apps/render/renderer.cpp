@@ -5,15 +5,13 @@
 #include <numbers>
 
 #include "apps/render/gl.hpp"
-#include "apps/render/legend.hpp"
 #include "apps/render/shaders.hpp"
-#include "apps/render/text.hpp"
 #include "apps/render/vertices.hpp"
 #include "tape/core/error.hpp"
 
 namespace tape::render {
 namespace {
-constexpr int kSamples = 4, kShadowSize = 1536;
+constexpr int kSamples = 4, kShadowSize = 2048;
 constexpr Real kGroundReach = 5;  // half width of the ground in diagonals of the scene
 const Vec3 kBackground(0.90, 0.905, 0.91);
 
@@ -75,9 +73,8 @@ struct Renderer::Impl {
   gl::Triangles triangles;
   gl::ShadowMap shadow{kShadowSize};
   gl::SampledFrame frame;
-  Font font;
 
-  Impl(int w, int h) : width(w), height(h), context(w, h), frame(w, h, kSamples), font(std::max(11, h / 36)) {
+  Impl(int w, int h) : width(w), height(h), context(w, h), frame(w, h, kSamples) {
     glEnable(GL_DEPTH_TEST);
     glEnable(GL_DEPTH_CLAMP);  // the ground may come nearer than the near plane
     gl::set_clip_depth_from_zero_to_one();
@@ -150,9 +147,6 @@ Picture Renderer::draw(const RenderScene& scene, const Camera& camera) {
   require_aspect(camera, impl_->width, impl_->height);
   impl_->context.make_current();
   impl_->draw(scene, camera);
-  Picture picture = impl_->picture();
-  draw_legends(picture, impl_->font, scene.legends);
-  draw_caption(picture, impl_->font, scene.caption);
-  return picture;
+  return impl_->picture();
 }
 }  // namespace tape::render

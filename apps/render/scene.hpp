@@ -1,10 +1,8 @@
 #pragma once
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "apps/render/camera.hpp"
-#include "apps/render/colors.hpp"
 #include "tape/core/types.hpp"
 
 namespace tape::render {
@@ -23,8 +21,6 @@ struct RenderScene {
   std::optional<Real>
       ground{};  ///< [m] height z of a ground with lines each 10 and 100 mm (100 mm and 1 m in scenes beyond 2 m); none: no ground
   std::optional<Bounds> bounds{};  ///< of the whole motion, so that shadows do not flicker; by default of the meshes
-  std::vector<Legend> legends{};
-  std::string caption{};  ///< in the upper left corner, such as the time
 };
 
 /// Smallest box around all meshes, of no extent in an empty scene.

@@ -66,8 +66,8 @@ EpisodeRecorder::EpisodeRecorder(const fs::path& file, const SceneArguments& sce
     robots_.push_back(static_cast<int>(r));
   }
   if (robots_.empty()) throw InputError("--record: the scene has no robot with joints");
-  for (const CameraParams& camera : loaded.input.pictures.cameras) {
-    const auto* pinhole = std::get_if<render::PinholeSettings>(&camera);
+  for (const movie::CameraParams& camera : loaded.input.pictures.cameras) {
+    const auto* pinhole = std::get_if<render::PinholeSettings>(&camera.lens);
     if (!pinhole) continue;
     const cosim::Calibration& c = pinhole->calibration;
     const Pose X_BC{rotation_exp(pinhole->rotation), pinhole->position};

@@ -6,6 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+
+#include "apps/tapesim/interrupt.hpp"
 
 namespace tape::tapesim {
 namespace {
@@ -21,6 +24,14 @@ std::string duration_text(double seconds) {
   if (s < 60) return fmt::format("{} s", s);
   if (s < 3600) return fmt::format("{} min {:02} s", s / 60, s % 60);
   return fmt::format("{} h {:02} min", s / 3600, s / 60 % 60);
+}
+
+std::function<bool(int done, int all)> watched_video() {
+  return [progress = std::shared_ptr<Progress>()](int done, int all) mutable {
+    if (!progress) progress = std::make_shared<Progress>("video", all);
+    progress->update(done);
+    return !interrupted();
+  };
 }
 
 Progress::Progress(std::string what, int total)

@@ -1,5 +1,6 @@
 #pragma once
 #include <chrono>
+#include <functional>
 #include <string>
 
 namespace tape::tapesim {
@@ -21,6 +22,9 @@ class Progress {
   bool terminal_, open_ = false;  // open_: the terminal's cursor stands behind a bar
   Clock::time_point start_, last_;
 };
+
+/// Shows how far a movie is, from its first call on; false after Ctrl-C.
+std::function<bool(int done, int all)> watched_video();
 
 /// "3 s", "2 min 05 s", "1 h 02 min".
 std::string duration_text(double seconds);

@@ -34,10 +34,13 @@ cosim::RunLog simulate_into(RunFolder& folder, LoadedWorld& loaded, Stepper& ste
   return cosim::simulate(loaded.world, stepper, state, options);
 }
 
-void commit_run(RunFolder& folder, const State& end, const LoadedWorld& loaded, const report::Provenance& provenance,
-                const cosim::RunSummary& summary) {
-  const std::string json = report::report_json(provenance, loaded.world, loaded.input.run.robots, summary).dump(2) + '\n';
+void write_report(const RunFolder& folder, const report::Json& json) { cosim::write_text(folder / "report.json", json.dump(2) + '\n'); }
+
+report::Json commit_run(RunFolder& folder, const State& end, const LoadedWorld& loaded, const report::Provenance& provenance,
+                        const cosim::RunSummary& summary) {
+  report::Json json = report::report_json(provenance, loaded.world, loaded.input.run.robots, summary);
   folder.commit(end);
-  cosim::write_text(folder / "report.json", json);
+  write_report(folder, json);
+  return json;
 }
 }  // namespace tape::tapesim

@@ -14,7 +14,8 @@ using OnStep = std::function<void(const State&, const cosim::StepRow&)>;
 /// @param steps  at most so many; negative: no limit  @param on_step  after each completed step
 cosim::RunLog simulate_into(RunFolder& folder, LoadedWorld& loaded, Stepper& stepper, State& state, int steps, const OnStep& on_step);
 
-/// Gives the files of a run their names, report.json last.
-void commit_run(RunFolder& folder, const State& end, const LoadedWorld& loaded, const report::Provenance& provenance,
-                const cosim::RunSummary& summary);
+void write_report(const RunFolder& folder, const report::Json& json);
+/// Gives the files of a run their names, report.json last. @return the report
+report::Json commit_run(RunFolder& folder, const State& end, const LoadedWorld& loaded, const report::Provenance& provenance,
+                        const cosim::RunSummary& summary);
 }  // namespace tape::tapesim

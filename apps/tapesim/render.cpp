@@ -1,21 +1,26 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 
+#include "apps/movie/movie_file.hpp"
+#include "apps/movie/things.hpp"
 #include "apps/tapesim/commands.hpp"
 #include "apps/tapesim/interrupt.hpp"
-#include "apps/tapesim/pictures.hpp"
+#include "apps/tapesim/progress.hpp"
 #include "cosim/run/new_file.hpp"
+#include "cosim/scene/node.hpp"
 
 namespace tape::tapesim {
 namespace {
 struct RenderArguments {
-  std::string folder, camera, color = "material", out;
+  std::string folder, camera, color, out;
+  std::vector<std::string> overlay;
   std::vector<int> stills;
-  int width = 960, height = 540;
+  std::optional<int> width, height;
   bool no_ground = false;
-  double track = -1;
+  std::optional<double> track;
 };
 
 render::ColorBy color_of(const std::string& name) {
@@ -25,24 +30,38 @@ render::ColorBy color_of(const std::string& name) {
   return static_cast<render::ColorBy>(i);
 }
 
+/// What the scene says, and the command line over that.
+movie::PictureParams pictures(const RenderArguments& arguments, const cosim::RecordedMesh& mesh) {
+  const std::vector<std::string> bearers = movie::bearers_of(mesh);
+  movie::PictureParams params = movie::parse_pictures(mesh.pictures, bearers);
+  if (!arguments.color.empty()) params.view.color = color_of(arguments.color);
+  if (arguments.no_ground) params.view.ground = false;
+  params.view.track = arguments.track.value_or(params.view.track);
+  params.video.width = arguments.width.value_or(params.video.width);
+  params.video.height = arguments.height.value_or(params.video.height);
+  if (!arguments.camera.empty()) params.cameras = movie::load_cameras(arguments.camera);
+  if (!arguments.overlay.empty()) params.overlay = arguments.overlay;
+  for (const std::string& name : params.overlay)
+    if (std::ranges::find(bearers, name) == bearers.end())
+      throw InputError("--overlay " + name + ": no grip and no link robot:link has this name; " +
+                       cosim::suggestion(name, {bearers.begin(), bearers.end()}));
+  return params;
+}
+
 int render(const RenderArguments& arguments) {
   const std::filesystem::path folder = arguments.folder, out = arguments.out.empty() ? folder : std::filesystem::path(arguments.out);
   const cosim::StateReader recording(folder / "state.h5");
-  PictureParams params;
-  params.view = {color_of(arguments.color), !arguments.no_ground, arguments.track};
-  params.video.width = arguments.width;
-  params.video.height = arguments.height;
-  params.cameras = arguments.camera.empty() ? parse_cameras(recording.mesh().pictures) : load_cameras(arguments.camera);
+  const movie::PictureParams params = pictures(arguments, recording.mesh());
   cosim::make_folder(out);
   remember_interrupts();
   for (int frame : arguments.stills) {
     const std::filesystem::path file = out / fmt::format("still_{}.png", frame);
-    write_still(recording, params, frame, file);
+    movie::write_still(recording, params, frame, file);
     fmt::print("{}\n", file.string());
     if (interrupted()) return kInterrupted;
   }
   if (!arguments.stills.empty()) return kDone;
-  if (!write_video(recording, params, out / "video.mp4")) {
+  if (!movie::write_video(recording, params, out / "video.mp4", watched_video())) {
     fmt::print("interrupted: no video; to make it, give the same command again\n");
     return kInterrupted;
   }
@@ -53,14 +72,15 @@ int render(const RenderArguments& arguments) {
 
 void add_render(CLI::App& app, Action& chosen) {
   auto arguments = std::make_shared<RenderArguments>();
-  CLI::App* command = app.add_subcommand("render", "makes a video or stills from a recorded run");
+  CLI::App* command = app.add_subcommand("render", "makes a video, with a still of each phase, or stills from a recorded run");
   command->add_option("RUNDIR", arguments->folder, "folder of a run; its state.h5 is read")->required();
   command->add_option("--camera", arguments->camera,
                       "YAML file with eye, target, up, fov, follow, or with fx, fy, cx, cy, width, height, position, rotation; "
-                      "`camera: [{...}, {...}]`: several side by side");
+                      "`camera: [{...}, {...}]`: several side by side, those with `inset` in a corner");
   std::vector<std::string> colors;
   for (std::string_view name : enum_names(render::ColorBy{})) colors.emplace_back(name);
-  command->add_option("--color", arguments->color, "what colours mean")->check(CLI::IsMember(colors));
+  command->add_option("--color", arguments->color, "what colours mean (default: as the scene says, and so below)")
+      ->check(CLI::IsMember(colors));
   command
       ->add_option("--still", arguments->stills,
                    "instead of the video: a PNG of this recorded state; may be repeated; negative counts from the end")
@@ -68,6 +88,8 @@ void add_render(CLI::App& app, Action& chosen) {
   command->add_option("--width", arguments->width, "[px] of the picture, unless the camera is calibrated")->check(CLI::Range(16, 7680));
   command->add_option("--height", arguments->height, "[px] of the picture, unless the camera is calibrated")->check(CLI::Range(16, 4320));
   command->add_flag("--no-ground", arguments->no_ground, "without the ground and its lines");
+  command->add_option("--overlay", arguments->overlay, "shows the force of this grip, or link as robot:link; may be repeated")
+      ->allow_extra_args(false);
   command->add_option("--track", arguments->track, "[m] paints the row of the first strip that lies here at rest")
       ->check(CLI::Range(0.0, 100.0));
   command->add_option("--out", arguments->out, "folder for the pictures (default: RUNDIR)");

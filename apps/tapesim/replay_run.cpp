@@ -145,7 +145,8 @@ bool simulate_replay(LoadedReplay& replay, const std::filesystem::path& path, co
   }
   std::optional<EpisodeRecorder> recorder;
   if (!record.empty()) recorder.emplace(record, replay.scene, loaded, *stepper, state);
-  RunFolder folder(path, loaded.world, loaded.input.run.robots, loaded.input.run.phases, state, camera_text(loaded.input.pictures.cameras));
+  RunFolder folder(path, loaded.world, loaded.input.run.robots, loaded.input.run.phases, state,
+                   movie::pictures_text(loaded.input.pictures));
   const cosim::RunLog log = simulate_into(folder, loaded, *stepper, state, -1, [&](const State& now, const cosim::StepRow& row) {
     if (watch) watch->add(now);
     if (recorder) recorder->add(now);

@@ -17,6 +17,7 @@
 #include "apps/tapesim/settings_list.hpp"
 #include "cosim/exchange/exchange.hpp"
 #include "tape/core/execution.hpp"
+#include "tape/core/stopwatch.hpp"
 
 namespace tape::tapesim {
 namespace {
@@ -59,12 +60,25 @@ void print_how_to_resume(const RunArguments& arguments, const State& state, cons
              shell_word((folder / "snapshot.h5").string()), shell_word(folder.path().string()), options);
 }
 
+/// Ends the movie that was begun with the run; where there is none, or where it could not be kept up, makes that of the recording. The
+/// report gets the times that it took.
 /// @return false if interrupted
-bool make_video(const LoadedWorld& loaded, const RunFolder& folder) {
-  const cosim::StateReader recording(folder / "state.h5");
-  if (write_video(recording, loaded.input.pictures, folder / "video.mp4")) return true;
-  fmt::print("interrupted: no video. To make it:\n  tapesim render {}\n", shell_word(folder.path().string()));
-  return false;
+bool end_video(const LoadedWorld& loaded, const RunFolder& folder, std::optional<movie::LiveMovie>& live, report::Json& json) {
+  bool beside = false, made = false;
+  Real waited_ms = 0;
+  {
+    const Stopwatch watch(waited_ms);
+    beside = live && live->finish(watched_video()) == movie::LiveMovie::End::made;
+    made = beside || (!interrupted() && movie::write_video(cosim::StateReader(folder / "state.h5"), loaded.input.pictures,
+                                                           folder / "video.mp4", watched_video()));
+  }
+  if (!made) {
+    fmt::print("interrupted: no video. To make it:\n  tapesim render {}\n", shell_word(folder.path().string()));
+    return false;
+  }
+  json["video"] = {{"render_s", beside ? live->seconds() : 1e-3 * waited_ms}, {"after_run_s", 1e-3 * waited_ms}};
+  write_report(folder, json);
+  return true;
 }
 
 /// A step ends at (step + 1) dt, so that a snapshot goes on with the dt that it was made with.
@@ -81,7 +95,7 @@ int run(const RunArguments& arguments) {
   set_threads(arguments.threads);
   const Backend backend = backend_of(arguments.backend);
   LoadedWorld loaded = load_world(arguments.scene, Rolls::settle);
-  if (arguments.video) require_video(loaded.input.pictures);
+  if (arguments.video) movie::require_video(loaded.input.pictures);
   const std::unique_ptr<Stepper> stepper = cosim::make_stepper(backend, loaded.world, loaded.input.run.robots);
   State state = arguments.resume.empty() ? State::start(loaded.world) : resumed(arguments.resume, loaded.world);
   if (!arguments.resume.empty()) {
@@ -92,7 +106,9 @@ int run(const RunArguments& arguments) {
   std::optional<EpisodeRecorder> recorder;
   if (!arguments.record.empty()) recorder.emplace(arguments.record, arguments.scene, loaded, *stepper, state);
   RunFolder folder(arguments.out.empty() ? "out/" + loaded.world.setup.scene.name : arguments.out, loaded.world, loaded.input.run.robots,
-                   loaded.input.run.phases, state, camera_text(loaded.input.pictures.cameras));
+                   loaded.input.run.phases, state, movie::pictures_text(loaded.input.pictures));
+  std::optional<movie::LiveMovie> live;
+  if (arguments.video && first_step == 0) folder.show(live.emplace(loaded.input.pictures, folder / "video.mp4"));
   remember_interrupts();
   const int planned = cosim::planned_steps(loaded.world.setup.scene) - first_step;
   const cosim::RunLog log = [&] {
@@ -105,11 +121,11 @@ int run(const RunArguments& arguments) {
   }();
   const cosim::RunSummary summary = cosim::summarize(loaded.world, log, loaded.input.run.figures);
   const report::Provenance provenance{arguments.scene.scene, TAPE_VERSION, runs_on_cuda(backend) ? "cuda" : "cpu", threads(), first_step};
-  commit_run(folder, state, loaded, provenance, summary);
+  report::Json json = commit_run(folder, state, loaded, provenance, summary);
   if (recorder) recorder->commit();
   print_summary(summary, folder);
   if (log.interrupted) print_how_to_resume(arguments, state, folder);
-  const bool filmed = log.interrupted || !arguments.video || make_video(loaded, folder);
+  const bool filmed = log.interrupted || !arguments.video || end_video(loaded, folder, live, json);
   return !log.failure.empty() || summary.fell_short ? kFailed : log.interrupted || !filmed ? kInterrupted : kDone;
 }
 }  // namespace

@@ -75,7 +75,16 @@ bool RunFolder::keep_earlier_states(int step) {
   return true;
 }
 
-void RunFolder::start_mesh() { states_->start_mesh(mesh()); }
+void RunFolder::show(movie::LiveMovie& movie) {
+  movie_ = &movie;
+  movie_->start_mesh(mesh());
+}
+
+void RunFolder::start_mesh() {
+  states_->start_mesh(mesh());
+  ++mesh_;
+  if (movie_) movie_->start_mesh(mesh());
+}
 
 void RunFolder::add_step(const cosim::StepRow& row) {
   steps_.write(csv_line(report::step_cells(*world_, phases_, row)));
@@ -84,8 +93,11 @@ void RunFolder::add_step(const cosim::StepRow& row) {
 
 void RunFolder::add_state(const State& state, std::vector<Real> contact_force, std::vector<cosim::RobotRecord> robots) {
   if (state.step <= last_recorded_) return;
-  states_->add(cosim::RecordedFrame::of(*world_, state,
-                                        {std::move(contact_force), grip_force_, std::move(robots), phase_of(phases_, state, *world_)}));
+  cosim::RecordedFrame frame = cosim::RecordedFrame::of(
+      *world_, state, {std::move(contact_force), grip_force_, std::move(robots), phase_of(phases_, state, *world_)});
+  frame.mesh = mesh_;
+  states_->add(frame);
+  if (movie_) movie_->add(std::move(frame));
   last_recorded_ = state.step;
 }
 

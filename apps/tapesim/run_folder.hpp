@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/movie/live_movie.hpp"
 #include "cosim/run/new_file.hpp"
 #include "cosim/run/run_log.hpp"
 #include "cosim/run/state_file.hpp"
@@ -15,6 +16,8 @@ class RunFolder {
   /// @param pictures  what the scene says of pictures, for those made later  @throws InputError where the folder cannot be written in
   RunFolder(std::filesystem::path folder, const World& world, const cosim::RobotScene& robots, const std::vector<cosim::Phase>& phases,
             const State& start, const std::string& pictures);
+  /// From now on this movie gets what is recorded, too. To be given before the first state; it must outlive this.
+  void show(movie::LiveMovie& movie);
   /// A strip was cut.
   void start_mesh();
   void add_step(const cosim::StepRow& row);
@@ -36,6 +39,8 @@ class RunFolder {
   std::string pictures_;
   cosim::TextFile steps_;
   std::optional<cosim::StateWriter> states_;
+  movie::LiveMovie* movie_ = nullptr;
+  int mesh_ = 0;                  // how often strips have been cut since this began
   std::vector<Vec3> grip_force_;  // [grips] N at the end of the last step
   int last_recorded_ = -1;        // step
 };

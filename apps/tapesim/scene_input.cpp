@@ -20,6 +20,15 @@ World build_world(const Setup& setup, const std::string& file) {
   }
 }
 
+/// What bears a force that pictures may show.
+std::vector<std::string> bearers(const cosim::RunInput& run) {
+  std::vector<std::string> names;
+  for (const Grip& grip : run.setup.scene.grips) names.push_back(grip.name);
+  for (const cosim::RobotPart& robot : run.robots.robots)
+    for (int link = 0; link < static_cast<int>(robot.model->links.size()); ++link) names.push_back(body_name(robot, link));
+  return names;
+}
+
 void settle(cosim::RunInput& run, const std::string& file, Rolls rolls) {
   if (!run.settle_roll) return;
   try {
@@ -47,7 +56,7 @@ SceneInput load_scene(const SceneArguments& arguments) {
   std::vector<std::string> overrides = arguments.overrides;
   if (!arguments.model.empty()) overrides.push_back("model=" + arguments.model);
   SceneInput input{cosim::read_run(cosim::SceneFile::load(arguments.scene, overrides)), {}, {}};
-  input.pictures = read_pictures(input.run.file.root());
+  input.pictures = movie::read_pictures(input.run.file.root(), bearers(input.run));
   input.run.file.read("record", input.episode);
   input.run.file.require_all_used();
   return input;

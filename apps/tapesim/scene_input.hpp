@@ -1,8 +1,8 @@
 #pragma once
 #include <functional>
 
+#include "apps/movie/params.hpp"
 #include "apps/tapesim/commands.hpp"
-#include "apps/tapesim/pictures.hpp"
 #include "cosim/run/read_run.hpp"
 #include "tape/step/settle.hpp"
 
@@ -26,7 +26,7 @@ struct EpisodeParams {
 /// All of a scene file: the simulation, the pictures of it, and what of it becomes an episode.
 struct SceneInput {
   cosim::RunInput run;
-  PictureParams pictures;
+  movie::PictureParams pictures;
   EpisodeParams episode;
 };
 /// @throws InputError also for keys that nobody knows

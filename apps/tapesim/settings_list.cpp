@@ -1,7 +1,7 @@
 #include "apps/tapesim/settings_list.hpp"
 
+#include "apps/movie/params.hpp"
 #include "apps/report/table.hpp"
-#include "apps/tapesim/pictures.hpp"
 #include "apps/tapesim/scene_input.hpp"
 #include "cosim/exchange/robots.hpp"
 #include "cosim/run/run_log.hpp"
@@ -66,10 +66,11 @@ std::string settings_text() {
   add<cosim::ExchangeParams>(table, "exchange");
   add<cosim::RecordParams>(table, "record");
   add<EpisodeParams>(table, "record");
-  add<ViewParams>(table, "video");
+  add<movie::ViewParams>(table, "video");
   add<video::VideoSettings>(table, "video");
   add<render::LookAtSettings>(table, "camera");
   add<render::PinholeSettings>(table, "camera");
+  add<movie::InsetParams>(table, "camera.inset");
   return report::to_text(table);
 }
 }  // namespace tape::tapesim

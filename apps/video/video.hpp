@@ -7,9 +7,9 @@
 
 namespace tape::video {
 struct VideoSettings {
-  int width = 960, height = 540;  ///< [px]  even, as H.264 with yuv420p asks
-  Real rate = 30;                 ///< [1/s] pictures per second of the video
-  int quality = 20;               ///< [1]   constant rate factor of libx264: smaller is better and larger
+  int width = 1280, height = 720;  ///< [px]  even, as H.264 with yuv420p asks
+  Real rate = 30;                  ///< [1/s] pictures per second of the video
+  int quality = 20;                ///< [1]   constant rate factor of libx264: smaller is better and larger
   template <class F>
   void fields(F&& f) {
     f("width", width, "px", Range::closed(16, 7680), "width, even");

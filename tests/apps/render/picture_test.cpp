@@ -36,6 +36,20 @@ TEST(Picture, SideBySideEachKeepsItsPixels) {
   EXPECT_EQ(both.at(2, 1)[2], 20);
 }
 
+TEST(Picture, WhatIsPastedIsCutOffAtTheEdges) {
+  Picture part(3, 2);
+  std::fill(part.rgb.begin(), part.rgb.end(), std::uint8_t{9});
+  const auto covered = [&](int x, int y) {
+    Picture onto(4, 4);
+    paste(onto, part, x, y);
+    return std::count(onto.rgb.begin(), onto.rgb.end(), 9) / 3;
+  };
+  EXPECT_EQ(covered(1, 1), 6);
+  EXPECT_EQ(covered(-2, 3), 1);
+  EXPECT_EQ(covered(3, -1), 1);
+  EXPECT_EQ(covered(4, 0) + covered(0, 4) + covered(-3, 0) + covered(0, -2), 0);
+}
+
 TEST(Picture, AFileThatCannotBeWrittenIsNamedAndNothingIsLeft) {
   const fs::path path = fs::temp_directory_path() / "no such folder" / "a.png";
   try {

@@ -194,6 +194,30 @@ TEST_F(Run, ReportsWhatEachPhaseCost) {
   ASSERT_EQ(run("b", {"--steps", "1"}).exit_code, 0);
   EXPECT_FALSE(report("b").contains("phases")) << "of a script without phases";
 }
+/// Beside the run the movie knows only its beginning; afterwards it is drawn from the recording.
+TEST_F(Run, TheVideoIsThatOfTheRecordingAndHasAStillOfEachPhase) {
+  scene = folder.file("movie.yaml", std::string(kScene) +
+                                        "camera:\n  - {eye: [0.06, -0.1, 0.06], target: [0, 0, 0]}\n"
+                                        "  - {eye: [0.05, -0.02, 0.02], target: [0, 0, 0], inset: {corner: top_right}}\n"
+                                        "video: {width: 320, height: 180, overlay: [hand]}\n");
+  const std::vector<std::string> phases{"--set", "script=[{phase: fall}, {grip: tape.root, as: hand}, {wait: 0.05}, {phase: rest}]"};
+  const Outcome outcome = run("a", with(phases, {"--video"}));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(folder.names("a"),
+              ElementsAre("report.json", "snapshot.h5", "state.h5", "steps.csv", "still_fall.png", "still_rest.png", "video.mp4"));
+  EXPECT_GT(report("a")["video"]["render_s"], 0);
+  EXPECT_GT(report("a")["video"]["after_run_s"], 0);
+  ASSERT_EQ(tapesim({"render", (folder / "a").string(), "--out", (folder / "b").string()}).exit_code, 0);
+  for (const char* name : {"video.mp4", "still_fall.png", "still_rest.png"})
+    EXPECT_TRUE(read(folder / "a" / name) == read(folder / "b" / name)) << name;
+  ASSERT_EQ(run("c", with(phases, {"--steps", "4"})).exit_code, 0);
+  ASSERT_EQ(run("c", with(phases, {"--video", "--resume", (folder / "c" / "snapshot.h5").string()})).exit_code, 0);
+  EXPECT_TRUE(read(folder / "c" / "still_rest.png") == read(folder / "a" / "still_rest.png"));
+  const Outcome unknown = run("d", {"--video", "--set", "video.overlay=[hnd]"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, testing::AllOf(HasSubstr("video.overlay.0 = hnd"), HasSubstr("did you mean hand?")));
+  EXPECT_EQ(tapesim({"render", (folder / "a").string(), "--overlay", "hnd"}).exit_code, 2);
+}
 TEST_F(BadInput, ASnapshotGoesOnOnlyWithItsTimeStep) {
   ASSERT_EQ(run("a", {"--steps", "6"}).exit_code, 0);
   const Outcome outcome = run("b", {"--resume", (folder / "a" / "snapshot.h5").string(), "--set", "time.dt=0.02"});

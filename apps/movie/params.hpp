@@ -1,16 +1,18 @@
 #pragma once
+#include <array>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
 #include "apps/render/camera.hpp"
 #include "apps/render/colors.hpp"
 #include "apps/video/video.hpp"
-#include "cosim/run/state_file.hpp"
 #include "cosim/scene/reader.hpp"
 
-namespace tape::tapesim {
+namespace tape::movie {
 /// How a recording is shown: section `video` of a scene.
 struct ViewParams {
   render::ColorBy color = render::ColorBy::material;
@@ -23,28 +25,42 @@ struct ViewParams {
     f("track", track, "m", Range::closed(-1, 100), "paints the row of the first strip that lies here at rest; negative: none");
   }
 };
+
+enum class Corner { bottom_right, bottom_left, top_right, top_left };
+constexpr auto enum_names(Corner) { return std::array<std::string_view, 4>{"bottom_right", "bottom_left", "top_right", "top_left"}; }
+/// Where the picture of a camera stands in the whole one.
+struct InsetParams {
+  Corner corner = Corner::bottom_right;
+  Real width = 0.33;
+  template <class F>
+  void fields(F&& f) {
+    f("corner", corner, "", Range::any(), "of the whole picture, where that of the camera stands");
+    f("width", width, "", Range::closed(0.05, 0.9), "of the whole picture's, and so high");
+  }
+};
 /// One camera of section `camera`: by where it looks, or calibrated.
-using CameraParams = std::variant<render::LookAtSettings, render::PinholeSettings>;
+struct CameraParams {
+  std::variant<render::LookAtSettings, render::PinholeSettings> lens;
+  std::optional<InsetParams> inset = {};  ///< none: it stands beside the others
+};
+
 struct PictureParams {
   ViewParams view;
   video::VideoSettings video;
-  std::vector<CameraParams> cameras;  ///< side by side; none: one that takes in the whole motion of what moves
+  std::vector<CameraParams> cameras;  ///< none: one that takes in the whole motion of what moves
+  std::vector<std::string> overlay;   ///< grips, and links as robot:link, whose force is shown
 };
 /// Sections `video` and `camera` of a file.
-PictureParams read_pictures(const cosim::Reader& root);
+/// @param bearers  what may be named in the overlay
+PictureParams read_pictures(const cosim::Reader& root, const std::vector<std::string>& bearers);
 /// What stands in `camera`: a camera, or a list of them; `fx` and the like make one a calibrated one.
 std::vector<CameraParams> read_cameras(const cosim::Reader& camera);
 /// A camera file: the keys of a `camera` section, or a file with such a section.
 std::vector<CameraParams> load_cameras(const std::filesystem::path& file);
 /// As text that a recording can keep, and back.
-std::string camera_text(const std::vector<CameraParams>& cameras);
-std::vector<CameraParams> parse_cameras(const std::string& text);
+std::string pictures_text(const PictureParams& params);
+PictureParams parse_pictures(const std::string& text, const std::vector<std::string>& bearers);
 
 /// @throws InputError where no video can be made so, before anything is simulated for it
 void require_video(const PictureParams& params);
-/// The whole recording, at the speed of the simulation. Shows its progress.
-/// @return false if it was interrupted: there is no file then
-bool write_video(const cosim::StateReader& recording, const PictureParams& params, const std::filesystem::path& file);
-/// One recorded state. @param frame  counted from 0; negative: from the end
-void write_still(const cosim::StateReader& recording, const PictureParams& params, int frame, const std::filesystem::path& file);
-}  // namespace tape::tapesim
+}  // namespace tape::movie
