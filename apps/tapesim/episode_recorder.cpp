@@ -9,6 +9,7 @@
 
 #include "cosim/episode/episode_file.hpp"
 #include "cosim/run/new_file.hpp"
+#include "cosim/run/state_file.hpp"
 #include "tape/math/rotation.hpp"
 
 namespace tape::tapesim {
