@@ -38,9 +38,7 @@ struct Bonds {
 
   static constexpr AdhesionLaw of_law = AdhesionLaw::bond;
   static std::string needed(const Scene& scene, const Params&) { return scene.uses(of_law) ? "interfaces" : ""; }
-  static Bonds build(const Scene& scene, const Assembly&, const Params&, std::vector<Element>&) {
-    return {{}, scene.dhat()};
-  }
+  static Bonds build(const Scene& scene, const Assembly&, const Params&, std::vector<Element>&) { return {{}, scene.dhat()}; }
   TAPE_HD inline Element recall(const Memory& m, const ContactPair& pair, const StateView& s) const;
 
   TAPE_HD Stencil<4> stencil(int i) const {

@@ -40,9 +40,7 @@ struct Cohesion {
 
   static constexpr AdhesionLaw of_law = AdhesionLaw::per_pair;
   static std::string needed(const Scene& scene, const Params&) { return scene.uses(of_law) ? "interfaces" : ""; }
-  static Cohesion build(const Scene& scene, const Assembly&, const Params& p, std::vector<Element>&) {
-    return {{}, scene.dhat(), p.frame};
-  }
+  static Cohesion build(const Scene& scene, const Assembly&, const Params& p, std::vector<Element>&) { return {{}, scene.dhat(), p.frame}; }
 
   /// The element of a remembered pair, at s.x == s.x_start.
   TAPE_HD inline Element recall(const Memory& m, const ContactPair& pair, const StateView& s) const;

@@ -20,7 +20,7 @@ struct Pair {
   ContactPair pair;
   Barrier barrier;
   Pair(PairKind kind, std::vector<Vec3> at, Real mollifier = 0)
-      : x(std::move(at)), pair{{0, 1, 2, 3}, kind, 0, 9e-5, kDhat, kUnit, mollifier, {}}, barrier{{&pair, 1}, 1} {}
+      : x(std::move(at)), pair{{0, 1, 2, 3}, kind, 0, 9e-5, kDhat, 1, kUnit, mollifier, {}}, barrier{{&pair, 1}} {}
   Pair(const Pair&) = delete;
   Pair& operator=(const Pair&) = delete;
   StateView view() const {

@@ -44,7 +44,7 @@ Published read_state(std::istream& in) {
     p.gradient.segment<3>(3 * v) = read_vector(in);
   }
   for (int k = 0; k < pairs; ++k) {
-    Published::Pair q{{{0, 0, 0, 0}, PairKind::vertex_triangle, 0, 0, std::sqrt(p.dhat2), 1, 0, {}}, 1, 0};
+    Published::Pair q{{{0, 0, 0, 0}, PairKind::vertex_triangle, 0, 0, std::sqrt(p.dhat2), 1, 1, 0, {}}, 1, 0};
     int edge_edge;
     for (int& v : q.pair.v) in >> v;
     in >> edge_edge >> q.multiplicity >> q.normal_force;
@@ -87,7 +87,7 @@ struct Lagged {
   std::vector<Friction::Element> elements;
   Friction friction;
   StateView view{};
-  explicit Lagged(const Published& p) : friction{{}, std::sqrt(p.eps2), SlipFrame::fixed, {{}, 1}} {
+  explicit Lagged(const Published& p) : friction{{}, std::sqrt(p.eps2), SlipFrame::fixed, {}} {
     view.dt = 1;
     view.x = view.x_start = span(p.lagged);
     view.mu = {&p.mu, 1};
