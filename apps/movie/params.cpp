@@ -57,8 +57,12 @@ CameraParams read_camera(const cosim::Reader& camera) {
   const cosim::Reader inset = camera["inset"];
   if (camera["fx"]) {
     if (inset) inset.fail("a calibrated camera has its own size and is no inset");
-    cosim::read_distortion(camera["distortion"]);  // checked, no more: pictures are drawn as an ideal lens makes them
-    return {read_as<render::PinholeSettings>(camera)};
+    auto pinhole = read_as<render::PinholeSettings>(camera);
+    pinhole.calibration.lens =
+        cosim::read_distortion(camera["distortion"]);  // of landmarks: pictures are drawn as an ideal lens makes them
+    require_name(camera["name"], pinhole.name);
+    require_name(camera["mount"], pinhole.mount);
+    return {pinhole};
   }
   const auto look = read_as<render::LookAtSettings>(camera);
   try {
@@ -72,6 +76,16 @@ CameraParams read_camera(const cosim::Reader& camera) {
   return {look};
 }
 
+/// Pictures side by side are of one size.
+void require_one_size(const std::vector<CameraParams>& cameras, const std::vector<cosim::Reader>& where) {
+  const auto* first = std::get_if<render::PinholeSettings>(&cameras[0].lens);
+  for (std::size_t i = 1; i < cameras.size(); ++i) {
+    const auto* other = std::get_if<render::PinholeSettings>(&cameras[i].lens);
+    if (!first && !other) continue;
+    if (!first || !other || first->calibration.width != other->calibration.width || first->calibration.height != other->calibration.height)
+      where[i].fail("a calibrated camera has its own size; beside it stand only those of the same");
+  }
+}
 /// A picture for the insets to stand in, and a corner for each.
 void require_room(const std::vector<CameraParams>& cameras, const std::vector<cosim::Reader>& where) {
   std::vector<Corner> taken;
@@ -89,12 +103,10 @@ std::vector<CameraParams> read_cameras(const cosim::Reader& camera) {
   if (!camera) return {};
   const std::vector<cosim::Reader> items = camera.is_list() ? camera.items() : std::vector<cosim::Reader>{camera};
   std::vector<CameraParams> cameras;
-  for (const cosim::Reader& one : items) {
-    cameras.push_back(read_camera(one));
-    if (items.size() > 1 && std::holds_alternative<render::PinholeSettings>(cameras.back().lens))
-      one.fail("a calibrated camera has its own size and stands alone");
-  }
-  if (!cameras.empty()) require_room(cameras, items);
+  for (const cosim::Reader& one : items) cameras.push_back(read_camera(one));
+  if (cameras.empty()) return cameras;
+  require_one_size(cameras, items);
+  require_room(cameras, items);
   return cameras;
 }
 
@@ -138,7 +150,10 @@ PictureParams read_pictures(const cosim::Reader& root, const std::vector<std::st
 void require_video(const PictureParams& params) {
   video::VideoSettings settings = params.video;
   const auto* pinhole = params.cameras.empty() ? nullptr : std::get_if<render::PinholeSettings>(&params.cameras[0].lens);
-  if (pinhole) settings.width = pinhole->width, settings.height = pinhole->height;
+  if (pinhole) {
+    settings.width = static_cast<int>(params.cameras.size()) * pinhole->calibration.width;
+    settings.height = pinhole->calibration.height;
+  }
   require_valid(settings);
 }
 }  // namespace tape::movie

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <numbers>
 
-#include "cosim/episode/calibration.hpp"
 #include "tape/math/rotation.hpp"
 
 namespace tape::render {
@@ -28,10 +27,7 @@ Camera Camera::make(const LookAtSettings& s, int width, int height) {
   return {width, height, f, f, 0.5 * (width - 1), 0.5 * (height - 1), {axes(forward, s.up), s.eye}};
 }
 
-Camera Camera::make(const PinholeSettings& s) {
-  require_valid(s, "camera");
-  return {s.width, s.height, s.fx, s.fy, s.cx, s.cy, {rotation_exp(s.rotation), s.position}};
-}
+Camera Camera::make(const PinholeSettings& s) { return make(s.calibration, {rotation_exp(s.rotation), s.position}); }
 
 Camera Camera::make(const cosim::Calibration& c, const Pose& X_WC) {
   require_valid(c, "camera");

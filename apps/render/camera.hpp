@@ -1,12 +1,9 @@
 #pragma once
 #include <string>
 
+#include "cosim/episode/calibration.hpp"
 #include "tape/core/settings.hpp"
 #include "tape/core/types.hpp"
-
-namespace cosim {
-struct Calibration;
-}
 
 namespace tape::render {
 using Bounds = Eigen::AlignedBox<Real, 3>;  // [m]
@@ -30,30 +27,24 @@ struct LookAtSettings {
   }
 };
 
-/// Calibrated camera of a scene file: intrinsics and pose in the world. Axes as in OpenCV: x right, y down, z forward; the centre
-/// of a pixel has integer coordinates.
+/// Calibrated camera of a scene file: intrinsics and pose in the world.
 struct PinholeSettings {
-  Real fx = 600, fy = 600;        ///< [px] focal lengths
-  Real cx = 423.5, cy = 239.5;    ///< [px] principal point
-  int width = 848, height = 480;  ///< [px] of the calibrated picture
-  Vec3 position{0, 0, 0};         ///< [m]   camera in the world
-  Vec3 rotation{0, 0, 0};         ///< [rad] rotation vector from camera to world axes
-  std::string mount = "";         ///< body, or link of a robot, whose frame stands for the world in position and rotation
+  cosim::Calibration calibration;  ///< pictures are drawn as an ideal lens of these focal lengths and principal point makes them
+  Vec3 position{0, 0, 0};          ///< [m]   camera in the world
+  Vec3 rotation{0, 0, 0};          ///< [rad] rotation vector from camera to world axes
+  std::string mount = "";          ///< body, or link of a robot, whose frame stands for the world in position and rotation
+  std::string name = "camera";     ///< in an episode that is recorded
   template <class F>
   void fields(F&& f) {
-    f("fx", fx, "px", Range::positive(), "horizontal focal length");
-    f("fy", fy, "px", Range::positive(), "vertical focal length");
-    f("cx", cx, "px", Range::any(), "column of the principal point");
-    f("cy", cy, "px", Range::any(), "row of the principal point");
-    f("width", width, "px", Range::closed(1, 16384), "width of the calibrated picture");
-    f("height", height, "px", Range::closed(1, 16384), "height of the calibrated picture");
+    calibration.fields(f);
     f("position", position, "m", Range::any(), "position in the world");
     f("rotation", rotation, "rad", Range::any(), "rotation vector from camera axes to world axes");
     f("mount", mount, "", Range::any(), "body, or link as robot:link, that the camera is fixed to: position and rotation are in its frame");
+    f("name", name, "", Range::any(), "of a calibrated camera, in an episode that is recorded");
   }
 };
 
-/// Pinhole camera; a point p_C seen from it falls on u = fx x/z + cx, v = fy y/z + cy [px] (axes and pixels of PinholeSettings).
+/// Pinhole camera; a point p_C seen from it falls on u = fx x/z + cx, v = fy y/z + cy [px] (axes and pixels of cosim::Calibration).
 struct Camera {
   int width, height;    ///< [px]
   Real fx, fy, cx, cy;  ///< [px]

@@ -82,10 +82,11 @@ Json settings_json(const Setup& setup, const cosim::RobotScene& robots) {
                                                {"settled", !strip.settled.empty()}};
   }
   for (const Material& material : scene.materials) json["materials"][material.name] = {{"mu", material.mu}};
-  for (const FrictionPair& pair : scene.frictions)
-    json["interfaces"].push_back(
-        {{"between", {scene.materials[static_cast<std::size_t>(pair.a)].name, scene.materials[static_cast<std::size_t>(pair.b)].name}},
-         {"mu", pair.mu}});
+  for (const auto& [key, pairs] : {std::pair("mu", &scene.frictions), std::pair("kappa", &scene.barriers)})
+    for (const MaterialPair& pair : *pairs)
+      json["interfaces"].push_back(
+          {{"between", {scene.materials[static_cast<std::size_t>(pair.a)].name, scene.materials[static_cast<std::size_t>(pair.b)].name}},
+           {key, pair.value}});
   for (const AdhesivePair& pair : scene.adhesives) json["adhesion"].push_back(adhesion_json(scene, pair));
   if (std::any_of(scene.strips.begin(), scene.strips.end(), [&](const Strip& s) { return scene.reduces(s); }))
     add_fields(json["cluster"], scene.cluster);

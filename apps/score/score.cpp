@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace tape::score {
 namespace {
@@ -66,6 +67,20 @@ RunScore run_score(const std::vector<FrameError>& frames, Real lead_in, Real max
   score.frames = static_cast<int>(errors.size());
   score.mean_error = mean(errors);
   return score;
+}
+
+std::vector<FrameMean> mean_errors(const std::vector<std::vector<FrameError>>& runs) {
+  std::map<Real, std::pair<FrameMean, int>> by_time;
+  for (const std::vector<FrameError>& run : runs)
+    for (const FrameError& frame : run) {
+      if (!frame.in_front) continue;
+      auto& [sum, count] = by_time[frame.time];
+      sum = {frame.time, sum.error + frame.error(), frame.estimated};
+      ++count;
+    }
+  std::vector<FrameMean> means;
+  for (const auto& [time, frame] : by_time) means.push_back({time, frame.first.error / frame.second, frame.first.estimated});
+  return means;
 }
 
 ModelScore model_score(const ModelErrors& errors, const BootstrapParams& params) {

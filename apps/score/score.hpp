@@ -48,10 +48,20 @@ struct RunScore {
   int not_in_front = 0;        ///< frames after the lead-in without an error
   Real worst_time_offset = 0;  ///< [s] largest distance in time of a counted frame from its simulated state
 };
+inline constexpr Real kMaxTimeOffset = 0.05;  ///< [s]
 /// @param lead_in  [s] frames before it are not counted: nothing moves yet
 /// @param max_time_offset  [s] largest distance in time from a frame to its simulated state
 /// @throws InputError if no frame is left to count, or one is further from every simulated state: the run did not last as long
-RunScore run_score(const std::vector<FrameError>& frames, Real lead_in, Real max_time_offset = 0.05);
+RunScore run_score(const std::vector<FrameError>& frames, Real lead_in, Real max_time_offset = kMaxTimeOffset);
+
+/// One frame of an episode, over the runs that repeat it.
+struct FrameMean {
+  Real time = 0;           ///< [s] since the start of the replay
+  Real error = 0;          ///< [px] mean over the runs that have one
+  bool estimated = false;  ///< the real landmark
+};
+/// Runs that repeat an episode, joined by the times of their frames: one may lack an error where others have one.
+std::vector<FrameMean> mean_errors(const std::vector<std::vector<FrameError>>& runs);
 
 /// Mean errors [px] of one model: for each episode the runs that repeat it.
 struct ModelErrors {

@@ -15,6 +15,7 @@ void add_explain(CLI::App& app, Action& chosen);
 void add_wind(CLI::App& app, Action& chosen);
 void add_check(CLI::App& app, Action& chosen);
 void add_study(CLI::App& app, Action& chosen);
+void add_replay(CLI::App& app, Action& chosen);
 void add_render(CLI::App& app, Action& chosen);
 void add_info(CLI::App& app, Action& chosen);
 

@@ -26,7 +26,6 @@ void require_command(const CLI::App& app, const std::string& word) {
   std::set<std::string, std::less<>> names;
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) names.insert(command->get_name());
   if (word.starts_with('-') || names.contains(word)) return;
-  if (word == "replay") throw InputError(word + ": not in this build");
   throw InputError(word + ": no such command; " + cosim::suggestion(word, names));
 }
 
@@ -69,7 +68,7 @@ int main(int argc, char** argv) {
   app.failure_message(
       [](const CLI::App*, const CLI::Error& e) { return fmt::format("tapesim: {}\nRun with --help for more information.\n", e.what()); });
   Action chosen;
-  for (const auto add : {add_run, add_explain, add_wind, add_check, add_study, add_render, add_info}) add(app, chosen);
+  for (const auto add : {add_run, add_explain, add_wind, add_check, add_study, add_replay, add_render, add_info}) add(app, chosen);
   return act([&] {
     if (argc > 1) require_command(app, argv[1]);
     try {

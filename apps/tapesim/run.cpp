@@ -9,16 +9,14 @@
 #include <optional>
 
 #include "apps/movie/things.hpp"
-#include "apps/report/json.hpp"
 #include "apps/report/phase_table.hpp"
 #include "apps/report/table.hpp"
+#include "apps/tapesim/episode_recorder.hpp"
 #include "apps/tapesim/interrupt.hpp"
 #include "apps/tapesim/progress.hpp"
-#include "apps/tapesim/run_folder.hpp"
-#include "apps/tapesim/scene_input.hpp"
+#include "apps/tapesim/recorded_run.hpp"
 #include "apps/tapesim/settings_list.hpp"
 #include "cosim/exchange/exchange.hpp"
-#include "cosim/run/summary.hpp"
 #include "tape/core/execution.hpp"
 #include "tape/core/stopwatch.hpp"
 
@@ -26,45 +24,10 @@ namespace tape::tapesim {
 namespace {
 struct RunArguments {
   SceneArguments scene;
-  std::string out, resume, backend = "auto";
+  std::string out, resume, record, backend = "auto";
   int steps = -1, threads = 0;
   bool video = false;
 };
-
-Backend backend_of(const std::string& name) {
-  const auto names = enum_names(Backend{});
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (names[i] == name) return static_cast<Backend>(i);
-  throw SettingsError("--backend", name, "auto, cpu or cuda");
-}
-
-bool runs_on_cuda(Backend backend) { return backend == Backend::cuda || (backend == Backend::automatic && cuda_available()); }
-
-cosim::RunLog simulate(const RunArguments& arguments, LoadedWorld& loaded, Stepper& stepper, State& state, RunFolder& folder) {
-  World& world = loaded.world;
-  const int first = state.step;
-  const int planned = cosim::planned_steps(world.setup.scene) - first;
-  Progress progress("run", arguments.steps < 0 ? planned : std::min(planned, arguments.steps));
-  const std::vector<cosim::Phase>& phases = loaded.input.run.phases;
-  cosim::RunOptions options{.max_steps = arguments.steps,
-                            .record = loaded.input.run.record,
-                            .events = loaded.input.run.events,
-                            .goals = loaded.input.run.goals,
-                            .phases = phases};
-  options.stop_asked = interrupted;
-  options.on_step = [&](const State& now, const cosim::StepRow& row) {
-    folder.add_step(row);
-    const std::string phase = row.phase < 0 ? "" : phases[static_cast<std::size_t>(row.phase)].name + ", ";
-    progress.update(now.step - first, fmt::format("{}t {:.3f} s, {:.1f} ms/step", phase, now.time, row.report.wall_ms));
-  };
-  options.on_cut = [&] { folder.start_mesh(); };
-  const auto* coupled = dynamic_cast<const cosim::CoupledStepper*>(&stepper);  // none where there are no robots
-  options.on_record = [&](const State& now) {
-    folder.add_state(now, now.step > first ? stepper.contact_force() : std::vector<Real>(),
-                     coupled ? coupled->records() : std::vector<cosim::RobotRecord>());
-  };
-  return cosim::simulate(world, stepper, state, options);
-}
 
 void print_summary(const cosim::RunSummary& s, const RunFolder& folder) {
   using report::rounded;
@@ -97,8 +60,6 @@ void print_how_to_resume(const RunArguments& arguments, const State& state, cons
   fmt::print("stopped after step {}. To go on:\n  tapesim run {} --resume {} --out {}{}\n", state.step, shell_word(arguments.scene.scene),
              shell_word((folder / "snapshot.h5").string()), shell_word(folder.path().string()), options);
 }
-
-void write_report(const RunFolder& folder, const report::Json& json) { cosim::write_text(folder / "report.json", json.dump(2) + '\n'); }
 
 /// Ends the movie that was begun with the run; where there is none, or where it could not be kept up, makes that of the recording. The
 /// report gets the times that it took.
@@ -147,17 +108,26 @@ int run(const RunArguments& arguments) {
     stepper->renew(state);
   }
   const int first_step = state.step;
+  std::optional<EpisodeRecorder> recorder;
+  if (!arguments.record.empty()) recorder.emplace(arguments.record, arguments.scene, loaded, *stepper, state);
   RunFolder folder(arguments.out.empty() ? "out/" + loaded.world.setup.scene.name : arguments.out, loaded.world, loaded.input.run.robots,
                    loaded.input.run.phases, state, movie::pictures_text(loaded.input.pictures));
   std::optional<movie::LiveMovie> live;
   if (arguments.video && first_step == 0) folder.show(live.emplace(loaded.input.pictures, folder / "video.mp4"));
   remember_interrupts();
-  const cosim::RunLog log = simulate(arguments, loaded, *stepper, state, folder);
+  const int planned = cosim::planned_steps(loaded.world.setup.scene) - first_step;
+  const cosim::RunLog log = [&] {
+    Progress progress("run", arguments.steps < 0 ? planned : std::min(planned, arguments.steps));
+    return simulate_into(folder, loaded, *stepper, state, arguments.steps, [&](const State& now, const cosim::StepRow& row) {
+      if (recorder) recorder->add(now);
+      const std::string phase = row.phase < 0 ? "" : loaded.input.run.phases[static_cast<std::size_t>(row.phase)].name + ", ";
+      progress.update(now.step - first_step, fmt::format("{}t {:.3f} s, {:.1f} ms/step", phase, now.time, row.report.wall_ms));
+    });
+  }();
   const cosim::RunSummary summary = cosim::summarize(loaded.world, log, loaded.input.run.figures);
   const report::Provenance provenance{arguments.scene.scene, TAPE_VERSION, runs_on_cuda(backend) ? "cuda" : "cpu", threads(), first_step};
-  report::Json json = report::report_json(provenance, loaded.world, loaded.input.run.robots, summary);
-  folder.commit(state);
-  write_report(folder, json);
+  report::Json json = commit_run(folder, state, loaded, provenance, summary);
+  if (recorder) recorder->commit();
   print_summary(summary, folder);
   if (log.interrupted) print_how_to_resume(arguments, state, folder);
   const bool filmed = log.interrupted || !arguments.video || end_video(loaded, folder, live, json);
@@ -176,7 +146,11 @@ void add_run(CLI::App& app, Action& chosen) {
   command->add_option("--threads", arguments->threads, "threads of the CPU back end; 0: all cores. Results do not depend on it")
       ->check(CLI::Range(0, 1024));
   command->add_flag("--video", arguments->video, "also make video.mp4");
-  command->add_option("--resume", arguments->resume, "goes on from a snapshot.h5 of the same scene");
+  command
+      ->add_option("--record", arguments->record,
+                   "also writes the motion of the robots and what the scene's calibrated cameras see of the hub as a synthetic episode: "
+                   "FILE.h5, and FILE.yaml to replay it")
+      ->excludes(command->add_option("--resume", arguments->resume, "goes on from a snapshot.h5 of the same scene"));
   command->footer([] { return "Settings of a scene:\n" + settings_text(); });
   command->callback([arguments, &chosen] { chosen = [arguments] { return run(*arguments); }; });
 }

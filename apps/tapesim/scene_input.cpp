@@ -55,14 +55,16 @@ SettleParams watched_settle() {
 SceneInput load_scene(const SceneArguments& arguments) {
   std::vector<std::string> overrides = arguments.overrides;
   if (!arguments.model.empty()) overrides.push_back("model=" + arguments.model);
-  SceneInput input{cosim::read_run(cosim::SceneFile::load(arguments.scene, overrides)), {}};
+  SceneInput input{cosim::read_run(cosim::SceneFile::load(arguments.scene, overrides)), {}, {}};
   input.pictures = movie::read_pictures(input.run.file.root(), bearers(input.run));
+  input.run.file.read("record", input.episode);
   input.run.file.require_all_used();
   return input;
 }
 
-LoadedWorld load_world(const SceneArguments& arguments, Rolls rolls) {
+LoadedWorld load_world(const SceneArguments& arguments, Rolls rolls, const std::function<void(cosim::RunInput&)>& prepare) {
   SceneInput input = load_scene(arguments);
+  if (prepare) prepare(input.run);
   settle(input.run, arguments.scene, rolls);
   World world = build_world(input.run.setup, arguments.scene);
   try {

@@ -2,6 +2,7 @@
 
 #include "apps/movie/params.hpp"
 #include "apps/report/table.hpp"
+#include "apps/tapesim/scene_input.hpp"
 #include "cosim/exchange/robots.hpp"
 #include "cosim/run/run_log.hpp"
 #include "tape/step/world.hpp"
@@ -64,6 +65,7 @@ std::string settings_text() {
   for_each_effect([&]<class T>(std::type_identity<T>) { add<typename T::Params>(table, std::string(T::name)); });
   add<cosim::ExchangeParams>(table, "exchange");
   add<cosim::RecordParams>(table, "record");
+  add<EpisodeParams>(table, "record");
   add<movie::ViewParams>(table, "video");
   add<video::VideoSettings>(table, "video");
   add<render::LookAtSettings>(table, "camera");

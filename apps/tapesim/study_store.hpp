@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/tapesim/run_store.hpp"
 #include "apps/tapesim/study_error.hpp"
 #include "cosim/run/summary.hpp"
 
@@ -23,15 +24,15 @@ struct StudyRun {
   bool measurable() const { return failure.empty(); }
 };
 
-/// Keeps the finished runs of a study in a file, so that it goes on where it was interrupted.
+/// The finished runs of a study.
 class StudyStore {
  public:
-  explicit StudyStore(std::filesystem::path file) : file_(std::move(file)) {}
+  explicit StudyStore(std::filesystem::path file) : store_(std::move(file)) {}
   /// Fills in `run` if one with this key is kept. @param key  of all that decides its outcome
   bool find(const std::string& key, StudyRun& run) const;
   void keep(const std::string& key, const StudyRun& run) const;
 
  private:
-  std::filesystem::path file_;
+  RunStore store_;
 };
 }  // namespace tape::tapesim

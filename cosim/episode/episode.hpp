@@ -64,6 +64,9 @@ struct Episode {
   std::vector<EpisodeCamera> cameras = {};
   std::vector<LandmarkTrack> landmarks = {};
 
+  /// Made by a simulation that plays the real world: its origin begins with this word.
+  bool synthetic() const { return origin.starts_with("synthetic"); }
+
   struct Span {
     Real start, end;  ///< [s]
   };

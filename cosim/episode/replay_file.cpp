@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <optional>
 
 #include "cosim/episode/camera_file.hpp"
 #include "cosim/episode/episode_file.hpp"
@@ -32,14 +34,16 @@ std::vector<std::pair<std::string, Place>> recorded_joints(const Episode& episod
   return all;
 }
 
-DrivenJoint read_driven(const Reader& entry, const std::string& recorded, Unit unit) {
+/// @param star  what a * in `drives` stands for
+DrivenJoint read_driven(const Reader& entry, const std::string& recorded, const std::string& star, Unit unit) {
   const Reader drives = entry["drives"];
-  const std::string target = drives.text();
+  std::string target = drives.text();
+  if (const std::size_t at = target.find('*'); at != target.npos) target.replace(at, 1, star);
   const std::size_t colon = target.find(':');
   if (colon == target.npos) drives.fail("names no joint of a robot (allowed: robot:joint)");
   DrivenJoint driven{.recorded = recorded, .robot = target.substr(0, colon), .joint = target.substr(colon + 1), .where = drives.where()};
   const Reader stated = entry["unit"];
-  if (stated.choice<Unit>() != unit) stated.fail("is recorded in " + to_text(unit) + " (allowed: the same)");
+  if (stated.choice<Unit>() != unit) stated.fail("is recorded in " + tape::to_text(unit) + " (allowed: the same)");
   if (const Reader sign = entry["sign"]) {
     driven.sign = sign.number(Range::closed(-1, 1), "");
     if (std::abs(driven.sign) != 1) sign.fail("is no sign (allowed: 1, -1)");
@@ -51,29 +55,53 @@ DrivenJoint read_driven(const Reader& entry, const std::string& recorded, Unit u
   return driven;
 }
 
+/// What the star of a pattern stands for in a name; nothing if the name does not fit. A pattern without a star fits itself.
+std::optional<std::string> behind_star(const std::string& pattern, const std::string& name) {
+  const std::size_t star = pattern.find('*');
+  if (star == pattern.npos) return pattern == name ? std::optional<std::string>("") : std::nullopt;
+  const std::string before = pattern.substr(0, star), after = pattern.substr(star + 1);
+  if (name.size() < before.size() + after.size() || !name.starts_with(before) || !name.ends_with(after)) return std::nullopt;
+  return name.substr(star, name.size() - before.size() - after.size());
+}
+
+/// The entry of a recorded joint: of the keys that fit it the last.
+struct JointEntry {
+  std::string key, star;
+};
+std::map<std::string, JointEntry> find_entries(const Reader& section, const std::vector<std::string>& names) {
+  std::map<std::string, JointEntry> entries;
+  for (const std::string& key : section.keys()) {
+    bool fits = false;
+    for (const std::string& name : names)
+      if (const auto star = behind_star(key, name)) entries[name] = {key, *star}, fits = true;
+    if (!fits) section[key].fail("the recording has no such joint; " + suggestion(key, {names.begin(), names.end()}));
+  }
+  for (const std::string& key : section.keys())
+    if (std::ranges::none_of(entries, [&](const auto& entry) { return entry.second.key == key; }))
+      section[key].fail("moves nothing: entries after it take all its joints");
+  return entries;
+}
+
 std::vector<DrivenJoint> read_joints(const Reader& section, const Episode& episode) {
   if (!section.is_map()) section.fail("missing; must be a section of recorded joints: {drives: robot:joint, unit: rad}, or none");
   const auto recorded = recorded_joints(episode);
   std::vector<std::string> names;
   for (const auto& [name, place] : recorded) names.push_back(name);
+  const std::map<std::string, JointEntry> entries = find_entries(section, names);
   std::vector<DrivenJoint> all;
-  const std::vector<std::string> keys = section.keys();
-  for (const std::string& name : keys) {
-    const Reader entry = section[name];
-    if (std::find(names.begin(), names.end(), name) == names.end())
-      entry.fail("the recording has no such joint; " + suggestion(name, {names.begin(), names.end()}));
+  for (const auto& [name, place] : recorded) {
+    const auto found = entries.find(name);
+    if (found == entries.end()) section.fail("recorded joint " + name + " is missing (allowed: what it drives, or none)");
+    const Reader entry = section[found->second.key];
     if (!entry.is_map()) {
       if (!entry || entry.text() != "none") entry.fail("must be {drives: robot:joint, unit: ...}, or none where it drives nothing");
       continue;
     }
-    const DrivenJoint driven = read_driven(entry, name, recorded[choose(entry, name, names)].second.unit());
+    const DrivenJoint driven = read_driven(entry, name, found->second.star, place.unit());
     for (const DrivenJoint& other : all)
       if (other.robot == driven.robot && other.joint == driven.joint) entry["drives"].fail("is driven by " + other.recorded + " already");
     all.push_back(driven);
   }
-  for (const std::string& name : names)
-    if (std::find(keys.begin(), keys.end(), name) == keys.end())
-      section.fail("recorded joint " + name + " is missing (allowed: what it drives, or none)");
   return all;
 }
 
@@ -110,7 +138,8 @@ robot::JointTrajectory trajectory_of(const Replay& replay, const MotionStream& s
   }
   if (columns.empty()) return motion;
   if (rows.empty())
-    throw InputError(fmt::format("{}: motion {} has no {} positions", columns[0].first->where, stream.name, to_text(replay.params.follow)));
+    throw InputError(
+        fmt::format("{}: motion {} has no {} positions", columns[0].first->where, stream.name, tape::to_text(replay.params.follow)));
   require_no_gap(stream, replay.start, replay.params.max_gap, columns[0].first->where);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     robot::VecX q(static_cast<Eigen::Index>(columns.size()));
@@ -150,7 +179,10 @@ Replay read_replay(const SceneFile& file) {
   Replay replay;
   replay.name = file["episode"].text();
   replay.scene = named_file(file["scene"], file.path(), "scenes");
-  replay.episode = read_episode(named_file(file["recording"], file.path(), "episodes"));
+  replay.recording = named_file(file["recording"], file.path(), "episodes");
+  replay.episode = read_episode(replay.recording);
+  const Reader set = file["set"];
+  for (const std::string& key : set.keys()) replay.overrides.push_back(key + "=" + set[key].text());
   file.root().read(replay.params);
   replay.camera = read_camera(file, replay.episode);
   const auto [first, last] = replay.episode.common();
@@ -163,6 +195,9 @@ Replay read_replay(const SceneFile& file) {
 void add_motions(const Replay& replay, RobotScene& robots) {
   for (const DrivenJoint& driven : replay.joints) require_driveable(driven, robots);
   for (RobotPart& part : robots.robots) {
+    const auto drives_it = [&](const DrivenJoint& driven) { return driven.robot == part.name; };
+    if (std::ranges::none_of(replay.joints, drives_it)) continue;
+    part.motions.clear();
     for (const MotionStream& stream : replay.episode.streams) {
       robot::JointTrajectory motion = trajectory_of(replay, stream, part);
       if (motion.joints.empty()) continue;
@@ -174,5 +209,11 @@ void add_motions(const Replay& replay, RobotScene& robots) {
     const robot::JointMap map = joint_map(*part.model);
     part.start = map.all(map.independent_of(part.start));  // joints that follow others start with them
   }
+}
+
+void set_up(const Replay& replay, RunInput& input) {
+  add_motions(replay, input.robots);
+  place_links(input.robots, input.setup.scene);
+  input.setup.scene.time.duration = replay.episode.common().end - replay.start;
 }
 }  // namespace cosim

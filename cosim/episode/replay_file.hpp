@@ -1,7 +1,6 @@
 #pragma once
 #include "cosim/episode/episode.hpp"
-#include "cosim/exchange/robots.hpp"
-#include "cosim/scene/scene_file.hpp"
+#include "cosim/run/read_run.hpp"
 
 namespace cosim {
 /// Which of the recorded positions the robots follow.
@@ -34,7 +33,8 @@ struct DrivenJoint {
 /// What EPISODE.yaml asks for (README.md): a scene, a recording, and how one moves in the other.
 struct Replay {
   std::string name;
-  std::filesystem::path scene;
+  std::filesystem::path scene, recording;
+  std::vector<std::string> overrides;  ///< of keys of the scene: "path.to.key=value"
   Episode episode;
   std::string camera;  ///< in whose pictures it is scored; its calibration may have been replaced; empty: not scored
   Real start = 0;      ///< [s] on the episode's clock, at which the simulation's time is 0
@@ -47,8 +47,12 @@ struct Replay {
 ///         unit than recorded, a camera that was not there or is calibrated for another resolution; and what read_episode refuses
 Replay read_replay(const SceneFile& file);
 
-/// Gives the robots of the scene the recorded motion, on the simulation's clock, and where it starts as their start.
+/// Gives the robots of the scene the recorded motion, on the simulation's clock, and where it starts as their start. What a script would
+/// do with a robot that the recording moves does not happen.
 /// @throws InputError "file:line: ..." for a robot or joint that the scene lacks, one that follows another, a position beyond its limits;
 ///         for a gap
 void add_motions(const Replay& replay, RobotScene& robots);
+
+/// Makes a scene the replay: robots move and start as recorded, and it lasts as long as the recording.  @throws InputError as add_motions
+void set_up(const Replay& replay, RunInput& input);
 }  // namespace cosim

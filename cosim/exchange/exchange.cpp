@@ -253,6 +253,16 @@ void CoupledStepper::advance_bullet(const robot::Snapshot& start, double dt, con
   bullet_.step(dt, tau);
 }
 
+/// Sets the joints to where they are told to be at the end of the step.
+void CoupledStepper::pose_bullet(double dt) {
+  const tape::Stopwatch watch(report_.bullet_ms);
+  for (int r = 0; r < bullet_.robots(); ++r) {
+    const RobotState before = bullet_.state(r);
+    const VectorXd q = scripts_[static_cast<std::size_t>(r)].told_at(time_);
+    bullet_.set_state(r, {before.X_WB, q, (q - before.q) / dt});
+  }
+}
+
 std::vector<RobotState> CoupledStepper::robot_states() const {
   std::vector<RobotState> out;
   for (int r = 0; r < bullet_.robots(); ++r) out.push_back(bullet_.state(r));
@@ -261,7 +271,11 @@ std::vector<RobotState> CoupledStepper::robot_states() const {
 
 tape::StepReport CoupledStepper::step_once(tape::State& state, double dt, const robot::Snapshot& start) {
   const std::vector<RobotState> before = robot_states();
-  advance_bullet(start, dt, load_);
+  const Schedule schedule = robots_.exchange.schedule;
+  if (schedule == Schedule::posed)
+    pose_bullet(dt);
+  else
+    advance_bullet(start, dt, load_);
   tape::Exchange exchange{.articulations = {}, .pinching = pinched_};
   for (const Part& part : parts_) {
     const auto robot = static_cast<std::size_t>(part.robot);
@@ -270,7 +284,7 @@ tape::StepReport CoupledStepper::step_once(tape::State& state, double dt, const 
   std::vector<robot::Vec3> loaded = momenta();
   tape::StepReport report = tape_->step(state, exchange);
   report_.tape_ms += report.wall_ms;
-  if (!report.ok || robots_.exchange.schedule == Schedule::kinematic) return report;
+  if (!report.ok || schedule == Schedule::kinematic || schedule == Schedule::posed) return report;
   const std::vector<robot::VecX> tau = forces(report);
   if (tau != load_) advance_bullet(start, dt, tau);  // else it has made the step already
   book_momentum(report, loaded, dt);

@@ -44,6 +44,7 @@ class CoupledStepper final : public tape::Stepper {
   double renew(const tape::State& state) override { return tape_->renew(state); }
   std::vector<double> contact_force() const override { return tape_->contact_force(); }
   const robot::World& bullet() const { return bullet_; }
+  const RobotScene& robots() const { return robots_; }
   const ExchangeReport& exchange() const { return report_; }
   std::vector<RobotRecord> records() const;  ///< [robots]
   JointPositions joints() const;
@@ -65,6 +66,7 @@ class CoupledStepper final : public tape::Stepper {
   void command(const tape::State& state);
   void see_to_pinching(const tape::State& state);
   void advance_bullet(const robot::Snapshot& start, double dt, const std::vector<robot::VecX>& tau);
+  void pose_bullet(double dt);
   tape::StepReport step_both(tape::State& state);
   tape::StepReport step_once(tape::State& state, double dt, const robot::Snapshot& start);
   tape::StepReport step_in_turns(tape::State& state, double dt, const robot::Snapshot& start);

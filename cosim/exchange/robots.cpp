@@ -74,6 +74,15 @@ void add_links(const RobotScene& robots, tape::Scene& scene) {
   }
 }
 
+void place_links(const RobotScene& robots, tape::Scene& scene) {
+  const robot::World world = make_world(robots);
+  for (std::size_t r = 0; r < robots.robots.size(); ++r)
+    for (int link = 0; link < static_cast<int>(robots.robots[r].model->links.size()); ++link) {
+      const auto body = std::ranges::find(scene.bodies, body_name(robots.robots[r], link), &tape::Body::name);
+      if (body != scene.bodies.end()) body->pose = to_tape(world.link_pose(static_cast<int>(r), link));
+    }
+}
+
 robot::World make_world(const RobotScene& robots) {
   robot::World world(robots.world);
   for (const RobotPart& part : robots.robots) {

@@ -12,8 +12,8 @@
 
 namespace cosim {
 /// How the two worlds go through a step together (README.md).
-enum class Schedule { inertial, kinematic, iterated };
-constexpr auto enum_names(Schedule) { return std::array<std::string_view, 3>{"inertial", "kinematic", "iterated"}; }
+enum class Schedule { inertial, kinematic, iterated, posed };
+constexpr auto enum_names(Schedule) { return std::array<std::string_view, 4>{"inertial", "kinematic", "iterated", "posed"}; }
 
 struct ExchangeParams {
   Schedule schedule = Schedule::inertial;
@@ -23,7 +23,9 @@ struct ExchangeParams {
   void fields(F&& f) {
     using tape::Range;
     f("schedule", schedule, "", Range::any(),
-      "inertial: tape and links are solved together; kinematic: links push and feel nothing; iterated: in turns");
+      "inertial: tape and links are solved together; kinematic: links push and feel nothing; iterated: in turns; posed: kinematic, and "
+      "joints "
+      "are where they are told to be, without drives");
     f("iterations", iterations, "1", Range::closed(1, 1000), "most turns of the iterated schedule");
     f("tolerance", tolerance, "1", Range::above(0, 1), "change of the forces between two turns at which the iterated schedule ends");
   }
@@ -82,6 +84,9 @@ std::string body_name(const RobotPart& robot, int link);
 
 /// Appends the links to a scene as bodies, and for each robot that moves an articulation of the same name.
 void add_links(const RobotScene& robots, tape::Scene& scene);
+
+/// Moves the bodies that are links to where the robots start.
+void place_links(const RobotScene& robots, tape::Scene& scene);
 
 /// Bullet's world of these robots, at its start.
 robot::World make_world(const RobotScene& robots);

@@ -81,7 +81,8 @@ Setup roll_alone(const Setup& setup, std::size_t strip) {
   tape.pose = {}, tape.velocity.setZero(), tape.settled.clear();
   tape.winding->hub = 0;
   const auto inside = [&](int a) { return a == tape.material || a == hub.material; };
-  std::erase_if(scene.frictions, [&](const FrictionPair& f) { return !inside(f.a) || !inside(f.b); });
+  for (std::vector<MaterialPair>* pairs : {&scene.frictions, &scene.barriers})
+    std::erase_if(*pairs, [&](const MaterialPair& p) { return !inside(p.a) || !inside(p.b); });
   std::erase_if(scene.adhesives, [&](const AdhesivePair& a) { return !inside(a.a) || !inside(a.b); });
   engage(scene);
   scene.contact.dhat = full.dhat();
@@ -143,7 +144,8 @@ std::string roll_settings(const Setup& alone) {
   const auto name = [&](int m) { return m == tape.material ? m == hub.material ? "tape and hub" : "tape" : "hub"; };
   for (const int a : {tape.material, hub.material})
     for (const int b : {tape.material, hub.material})
-      text.line(std::string("mu of ") + name(a) + " on " + name(b), to_text(scene.mu(a, b)));
+      for (const auto& [key, value] : {std::pair("mu", scene.mu(a, b)), std::pair("kappa", scene.kappa(a, b))})
+        text.line(std::string(key) + " of " + name(a) + " on " + name(b), to_text(value));
   for (const AdhesivePair& pair : scene.adhesives) {
     const std::string between = std::string(name(pair.a)) + " on " + name(pair.b);
     const Adhesion& a = pair.adhesion;

@@ -55,7 +55,7 @@ void add_peel_conditions(const World& world, std::vector<Condition>& conditions)
       const Film& film = scene.films[static_cast<std::size_t>(strip.film)];
       const Real stiffness = film.plate_stiffness(), cell = cell_length(strip.mesh, film.width);
       const Real zone = std::numbers::pi / 2 * std::pow(4 * stiffness * law.final_opening() / law.strength, 0.25);
-      const Jet barrier = BarrierLaw{scene.contact.kappa, scene.dhat()}.at(film.xi + law.rest * scene.dhat(), film.xi, 1);
+      const Jet barrier = BarrierLaw{scene.kappa(pair.a, pair.b), scene.dhat()}.at(film.xi + law.rest * scene.dhat(), film.xi, 1);
       push = std::max(push, -barrier.slope / law.strength);
       given = std::max(given, barrier.value / law.toughness);
       cell_per_fold = std::max(cell_per_fold, cell / std::sqrt(stiffness / (2 * law.toughness)));

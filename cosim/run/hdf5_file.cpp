@@ -24,6 +24,15 @@ hid_t row_layout(const Shape& row_shape) {
   }
   return layout;
 }
+/// Layout of an array that is written at once: packed if it holds much.
+hid_t whole_layout(const Shape& shape) {
+  const hid_t layout = H5Pcreate(H5P_DATASET_CREATE);
+  if (product(shape) < 1024) return layout;
+  H5Pset_chunk(layout, static_cast<int>(shape.size()), shape.data());
+  H5Pset_shuffle(layout);
+  H5Pset_deflate(layout, 6);
+  return layout;
+}
 /// An array, with the folders in its name.
 hid_t create(hid_t file, const std::string& array, hid_t type, hid_t space, hid_t layout) {
   const tape::Hdf5Handle folders(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
@@ -51,7 +60,8 @@ void Hdf5Writer::require(bool success) const {
 
 void Hdf5Writer::write(const std::string& array, const void* values, hid_t type, const Shape& shape) {
   const tape::Hdf5Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
-  const tape::Hdf5Handle data(create(id_, array, type, space, H5P_DEFAULT), H5Dclose);
+  const tape::Hdf5Handle layout(whole_layout(shape), H5Pclose);
+  const tape::Hdf5Handle data(create(id_, array, type, space, layout), H5Dclose);
   require(data >= 0);
   if (product(shape) > 0) require(H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
 }

@@ -3,29 +3,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <utility>
 
 #include "cosim/run/event_watch.hpp"
 #include "cosim/run/measure.hpp"
+#include "cosim/run/record_clock.hpp"
 #include "tape/contact/intersection.hpp"
 #include "tape/core/stopwatch.hpp"
 
 namespace cosim {
 namespace {
-/// Says when the next state is due at a rate [1/s].
-class RecordClock {
- public:
-  RecordClock(Real rate, Real start) : rate_(rate), ticks_(count(start)) {}
-  bool due(Real time) {
-    const Real now = count(time);
-    return now > std::exchange(ticks_, now);
-  }
-
- private:
-  Real count(Real time) const { return std::floor(time * rate_ + 1e-6); }
-  Real rate_, ticks_;
-};
-
 void record(RunLog& log, const World& world, const State& state, const RunOptions& options) {
   log.checked_states += 1;
   log.intersections += find_intersections(world.surface, vertex_positions(world, state)).count;

@@ -219,9 +219,13 @@ class SceneReader {
     const std::vector<Reader> between = entry["between"].items();
     if (between.size() != 2) entry["between"].fail("must be a list of two names, of materials or of things");
     const Side first = side(between[0]), second = side(between[1]);
-    const Reader mu = entry["mu"], law = entry["law"];
-    if (!mu && !law) entry.fail("says neither mu nor law");
-    if (mu) for_each_pair(first, second, [&, value = mu.number(Range::non_negative(), "")](int a, int b) { set_friction(a, b, value); });
+    const Reader mu = entry["mu"], kappa = entry["kappa"], law = entry["law"];
+    if (!mu && !kappa && !law) entry.fail("says none of mu, kappa, law");
+    const auto set_all = [&](std::vector<tape::MaterialPair>& pairs, Real value) {
+      for_each_pair(first, second, [&](int a, int b) { set(pairs, {a, b, value}); });
+    };
+    if (mu) set_all(scene_.frictions, mu.number(Range::non_negative(), ""));
+    if (kappa) set_all(scene_.barriers, kappa.number(Range::positive(), "Pa"));
     if (!law) return;
     tape::AdhesivePair adhesive;
     bool roll = false;
@@ -305,11 +309,12 @@ class SceneReader {
     const std::size_t strips = scene_.strips.size();
     const std::string& owner = object < strips ? scene_.strips[object].name : scene_.bodies[object - strips].name;
     scene_.materials.push_back({scene_.materials[mine].name + " of " + owner, scene_.materials[mine].mu});
-    for (const tape::FrictionPair& f : std::vector<tape::FrictionPair>(scene_.frictions)) {
-      if (f.a != mine && f.b != mine) continue;
-      scene_.frictions.push_back({f.a == mine ? copy : f.a, f.b == mine && f.a != mine ? copy : f.b, f.mu});
-      if (f.a == f.b) scene_.frictions.push_back({copy, copy, f.mu});
-    }
+    for (std::vector<tape::MaterialPair>* pairs : {&scene_.frictions, &scene_.barriers})
+      for (const tape::MaterialPair& p : std::vector<tape::MaterialPair>(*pairs)) {
+        if (p.a != mine && p.b != mine) continue;
+        pairs->push_back({p.a == mine ? copy : p.a, p.b == mine && p.a != mine ? copy : p.b, p.value});
+        if (p.a == p.b) pairs->push_back({copy, copy, p.value});
+      }
     for (tape::AdhesivePair p : std::vector<tape::AdhesivePair>(scene_.adhesives)) {
       if (p.a != mine && p.b != mine) continue;
       const tape::AdhesivePair known = p;
@@ -325,13 +330,10 @@ class SceneReader {
     });
     if (adhesive.adhesion.law != tape::AdhesionLaw::none) scene_.adhesives.push_back(adhesive);
   }
-  void set_friction(int a, int b, Real mu) {
-    for (tape::FrictionPair& f : scene_.frictions)
-      if ((f.a == a && f.b == b) || (f.a == b && f.b == a)) {
-        f.mu = mu;
-        return;
-      }
-    scene_.frictions.push_back({a, b, mu});
+  static void set(std::vector<tape::MaterialPair>& pairs, const tape::MaterialPair& wanted) {
+    std::erase_if(
+        pairs, [&](const tape::MaterialPair& p) { return (p.a == wanted.a && p.b == wanted.b) || (p.a == wanted.b && p.b == wanted.a); });
+    pairs.push_back(wanted);
   }
 
   const SceneFile& file_;

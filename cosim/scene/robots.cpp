@@ -120,12 +120,14 @@ robot::RobotModel load_welded(const Reader& section, const SceneFile& file) {
   return model;
 }
 
-RobotPart read_robot(const Reader& section, const std::string& name, const SceneFile& file) {
+RobotPart read_robot(const Reader& section, const std::string& name, const SceneFile& file, Schedule schedule) {
   RobotPart part{.name = name};
   part.model = std::make_shared<const robot::RobotModel>(load_welded(section, file));
   part.params.X_WB = to_robot(read_pose(section));
   part.params.fixed_base = section["base"].text_or("fixed") == "fixed";
   if (const Reader base = section["base"]) choose(base, {"fixed", "free"});
+  if (!part.params.fixed_base && schedule == Schedule::posed)
+    section["base"].fail("nobody tells a free base where to be, as exchange.schedule = posed asks");
   part.params.friction = section["friction"].number_or(0.5, Range::non_negative(), "");
   part.velocity = section["velocity"].vector_or(part.velocity, kPlace, "m/s");
   part.xi = section["xi"].number_or(0, Range::closed(0, 0.01), "m");
@@ -217,7 +219,7 @@ RobotScene read_robots(const SceneFile& file, const Vec3& gravity, const std::fu
   scene.world.substep = file["physics"]["substep"].number_or(scene.world.substep, Range::above(0, 0.1), "s");
   for (const std::string& name : section.keys()) {
     if (name.find_first_of(".: ") != std::string::npos) section[name].fail("a name holds neither dots, colons nor spaces");
-    RobotPart& part = scene.robots.emplace_back(read_robot(section[name], name, file));
+    RobotPart& part = scene.robots.emplace_back(read_robot(section[name], name, file, scene.exchange.schedule));
     part.material = material(section[name]["material"].text_or(name));
   }
   return scene;

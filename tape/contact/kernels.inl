@@ -21,6 +21,7 @@ struct SurfaceView {
   Span<const char> member;  ///< [nv] of a cluster
   Span<const char> apart;   ///< [objects objects] 1: never a pair; empty: all may be
   Span<const char> shuns;   ///< [objects] 1: kept apart from all that is outside; empty: none is
+  Span<const Real> kappa;   ///< [materials materials] Pa, stiffness of the barrier by interface
   int objects, materials;
   Real dhat;   ///< [m] reach of vertex-triangle pairs beyond xi
   Real guard;  ///< [m] reach of the barrier of edge-edge pairs and between a rim and an open surface
@@ -44,6 +45,7 @@ struct SurfaceView {
             .interface = interface(v, b.v[0]),
             .xi = a.xi + xi(b),
             .dhat = a.rim && b.open ? guard : dhat,
+            .kappa = kappa[interface(v, b.v[0])],
             .weight = std::min(a.area, b.mean_area),
             .mollifier = 0,
             .sharing = b.sharing,
@@ -456,6 +458,7 @@ struct EdgeQuery {
             .interface = s.interface(a.v[0], b.v[0]),
             .xi = s.xi(a) + s.xi(b),
             .dhat = s.guard,
+            .kappa = s.kappa[s.interface(a.v[0], b.v[0])],
             .weight = std::min(a.area, b.area),
             .mollifier = 1e-3 * a.length2 * b.length2,
             .sharing = {}};
@@ -531,6 +534,19 @@ struct LimitStep {
       atomic_min(&limit[a >= 0 ? a : b], step.t);
     }
     return step.capped ? 1 : 0;
+  }
+};
+/// What is left of the direction of a vertex that rides a body where its path is cut short: scaled by the limit it leads to that place.
+struct CutRiders {
+  PathView paths;
+  Span<const int> block_object, component;
+  Span<const Real> limit;
+  Span<Vec3> direction;
+  TAPE_HD void operator()(int v) const {
+    const VertexOwner o = paths.owner[v];
+    if (o.ride < 0) return;
+    const Real taken = limit[component[block_object[o.block]]];
+    if (taken > 0 && taken < 1) direction[o.block] = (paths[v].at(taken) - paths.x[v]) / taken;
   }
 };
 struct ScaleBlocks {

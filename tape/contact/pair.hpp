@@ -49,6 +49,7 @@ struct ContactPair {
   int interface;      ///< material of the first primitive times the number of materials, plus that of the second
   Real xi;            ///< [m]   sum of the half-thicknesses: surfaces touch at this distance
   Real dhat;          ///< [m]   reach of the barrier beyond xi
+  Real kappa;         ///< [Pa]  stiffness of the barrier
   Real weight;        ///< [m^2] surface that the pair stands for
   Real mollifier;     ///< [m^4] edge-edge: 1e-3 |ea|^2 |eb|^2 at rest; below this squared cross product the pair fades out
   Sharing sharing;    ///< of the triangle

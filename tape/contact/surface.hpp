@@ -54,6 +54,7 @@ struct SurfaceMesh {
   std::vector<JointlyMoved> together;
   std::vector<char> apart;  ///< [objects objects] 1: never a pair, symmetric; empty: all may be
   int materials = 1;
+  std::vector<Real> kappa = {1e4};  ///< [materials materials] Pa, stiffness of the barrier, symmetric
 
   bool kept_apart(int object, int other) const {
     return !apart.empty() && apart[static_cast<std::size_t>(object) * objects.size() + static_cast<std::size_t>(other)] != 0;

@@ -87,6 +87,7 @@ struct SurfaceBuffers {
       : vertices(mesh.vertices),
         edges(mesh.edges),
         triangles(mesh.triangles),
+        kappa(mesh.kappa),
         objects(static_cast<int>(mesh.objects.size())),
         materials(mesh.materials),
         dhat(dhat_),
@@ -159,6 +160,7 @@ struct SurfaceBuffers {
             member.span(),
             apart.span(),
             shuns.span(),
+            kappa.span(),
             objects,
             materials,
             dhat,
@@ -167,6 +169,7 @@ struct SurfaceBuffers {
   Buffer<SurfaceVertex> vertices;
   Buffer<SurfaceEdge> edges;
   Buffer<SurfaceTriangle> triangles;
+  Buffer<Real> kappa;
   Buffer<int> vertex_carrier, edge_carrier, triangle_carrier, vertex_frame, lead;
   Buffer<Home> home;                     ///< [frames]
   Buffer<char> member;                   ///< [nv]

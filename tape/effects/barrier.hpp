@@ -13,7 +13,6 @@ struct Barrier {
   using Params = NoParams;
   using Element = ContactPair;
   Span<const Element> elements;
-  Real kappa;  ///< [Pa]
 
   /// A strip can touch itself; bodies touch each other unless all, or all but one, are static.
   static std::string needed(const Scene& scene, const Params&) {
@@ -22,7 +21,7 @@ struct Barrier {
     for (const Body& b : scene.bodies) movable += b.motion != Motion::fixed;
     return movable > 0 && scene.bodies.size() > 1 ? "bodies" : "";
   }
-  static Barrier build(const Scene& scene, const Assembly&, const Params&, std::vector<Element>&) { return {{}, scene.contact.kappa}; }
+  static Barrier build(const Scene&, const Assembly&, const Params&, std::vector<Element>&) { return {}; }
 
   TAPE_HD Stencil<4> stencil(int i) const {
     const int(&v)[4] = elements[i].v;

@@ -54,7 +54,7 @@ TAPE_HD bool Barrier::active(const StateView& s, int i) const {
 }
 TAPE_HD bool Barrier::reaches(const PairState& p, const ContactPair& pair) { return BarrierLaw{1, pair.dhat}.reaches(p.d, pair.xi); }
 TAPE_HD Jet Barrier::barrier(const PairState& p, const ContactPair& pair) const {
-  return BarrierLaw{kappa, pair.dhat}.at(p.d, pair.xi, pair.weight);
+  return BarrierLaw{pair.kappa, pair.dhat}.at(p.d, pair.xi, pair.weight);
 }
 TAPE_HD Real Barrier::energy(const StateView& s, int i) const {
   const ContactPair& pair = elements[i];

@@ -34,14 +34,11 @@ struct Bonds {
     Real rest;       ///< [m]
   };
   Span<const Element> elements;
-  Real dhat;   ///< [m]
-  Real kappa;  ///< [Pa] of the barrier
+  Real dhat;  ///< [m]
 
   static constexpr AdhesionLaw of_law = AdhesionLaw::bond;
   static std::string needed(const Scene& scene, const Params&) { return scene.uses(of_law) ? "interfaces" : ""; }
-  static Bonds build(const Scene& scene, const Assembly&, const Params&, std::vector<Element>&) {
-    return {{}, scene.dhat(), scene.contact.kappa};
-  }
+  static Bonds build(const Scene& scene, const Assembly&, const Params&, std::vector<Element>&) { return {{}, scene.dhat()}; }
   TAPE_HD inline Element recall(const Memory& m, const ContactPair& pair, const StateView& s) const;
 
   TAPE_HD Stencil<4> stencil(int i) const {

@@ -97,5 +97,7 @@ TAPE_HD VecN<12> Bonds::bond_gradient(const Element& e, const StateView& s) {
   for (int k = 0; k < 4; ++k) g.segment<3>(3 * k) = P * row(e, k);
   return g;
 }
-TAPE_HD Jet Bonds::guard(const Element& e, const PairState& p) const { return BarrierLaw{kappa, e.rest / 2}.at(p.d, 0, e.pair.weight); }
+TAPE_HD Jet Bonds::guard(const Element& e, const PairState& p) const {
+  return BarrierLaw{e.pair.kappa, e.rest / 2}.at(p.d, 0, e.pair.weight);
+}
 }  // namespace tape

@@ -35,15 +35,12 @@ struct Cohesion {
     Real rest;              ///< [m] d*
   };
   Span<const Element> elements;
-  Real dhat;   ///< [m]
-  Real kappa;  ///< [Pa] of the barrier
+  Real dhat;  ///< [m]
   SlipFrame frame = SlipFrame::turning;
 
   static constexpr AdhesionLaw of_law = AdhesionLaw::per_pair;
   static std::string needed(const Scene& scene, const Params&) { return scene.uses(of_law) ? "interfaces" : ""; }
-  static Cohesion build(const Scene& scene, const Assembly&, const Params& p, std::vector<Element>&) {
-    return {{}, scene.dhat(), scene.contact.kappa, p.frame};
-  }
+  static Cohesion build(const Scene& scene, const Assembly&, const Params& p, std::vector<Element>&) { return {{}, scene.dhat(), p.frame}; }
 
   /// The element of a remembered pair, at s.x == s.x_start.
   TAPE_HD inline Element recall(const Memory& m, const ContactPair& pair, const StateView& s) const;
@@ -68,11 +65,11 @@ struct Cohesion {
   TAPE_HD inline AdhesiveForce force(const StateView& s, int i) const;
   /// d beta/dt [1/s].  Source: [the paper, eq. 3], without a gain where the barrier has no compression to compare with.
   /// @param slip2  [m^2] |u|^2
-  TAPE_HD inline Real rate(const PairCohesion& a, Real xi, Real beta, Real d, Real slip2) const;
+  TAPE_HD inline Real rate(const PairCohesion& a, const ContactPair& pair, Real beta, Real d, Real slip2) const;
 
  private:
   /// The part of p that the barrier B = kappa (r-1)^2 ln(r)^2 gives: -2 d dhat B'(d^2).
-  TAPE_HD inline Real compression(Real d, Real xi) const;
+  TAPE_HD inline Real compression(const ContactPair& pair, Real d) const;
 };
 static_assert(Effect<Cohesion>);
 }  // namespace tape

@@ -56,7 +56,7 @@ TAPE_HD bool Cohesion::begin(const ContactPair& pair, const StateView& s, Memory
   if (pair.kind != PairKind::vertex_triangle || a.law != of_law || far_apart(pair, s.x, pair.xi + dhat)) return false;
   const PairState p = PairState::at(pair, s.x);
   if (!(p.d < pair.xi + dhat) || !adheres(a, pair, p, s)) return false;
-  const Real grown = s.dt * rate(a.pair, pair.xi, 0, p.d, 0);
+  const Real grown = s.dt * rate(a.pair, pair, 0, p.d, 0);
   out = {pair.name(), std::fmin(std::fmax(a.pair.beta0, grown), 1), Vec3::Zero()};
   return out.beta > 0;
 }
@@ -66,7 +66,7 @@ TAPE_HD bool Cohesion::renew(const StateView& s, int i, Memory& m) const {
   const Real d = PairState::at(e.pair, s.x).d;
   if (!(d - e.rest < a.drop * dhat)) return false;
   const Vec2 u = slip(s, i);
-  m.beta = std::fmin(std::fmax(m.beta + s.dt * rate(a, e.pair.xi, m.beta, d, u.squaredNorm()), 0), 1);
+  m.beta = std::fmin(std::fmax(m.beta + s.dt * rate(a, e.pair, m.beta, d, u.squaredNorm()), 0), 1);
   m.slip = a.slip == SlipFrom::bonding ? e.lagged.remembered(u, s) : Vec3(Vec3::Zero());
   return true;
 }
@@ -79,13 +79,15 @@ TAPE_HD AdhesiveForce Cohesion::force(const StateView& s, int i) const {
           .normal = e.opening * (PairState::at(e.pair, s.x).d - e.rest),
           .tangential = e.sliding * slip(s, i).norm()};
 }
-TAPE_HD Real Cohesion::rate(const PairCohesion& a, Real xi, Real beta, Real d, Real slip2) const {
-  const Real opening = (d - xi) / dhat - 0.5, a_n = 4 * opening * opening;
+TAPE_HD Real Cohesion::rate(const PairCohesion& a, const ContactPair& pair, Real beta, Real d, Real slip2) const {
+  const Real opening = (d - pair.xi) / dhat - 0.5, a_n = 4 * opening * opening;
   const Real a_t = 4 * a.ct / a.cn * slip2 / (dhat * dhat);
-  const Real p = compression(d, xi) - a.cn * beta * beta * opening, p_b = compression(xi + dhat / 2, xi);
+  const Real p = compression(pair, d) - a.cn * beta * beta * opening, p_b = compression(pair, pair.xi + dhat / 2);
   const auto lost = [&](Real strain) { return 10 / a.eta * std::fmin(a.work - beta * strain, 0); };
   if (p < 0) return lost(a_n + a_t);
   return (p_b > 0 ? 100 * a.gamma / p_b * std::fmax(p - beta * a.p0, 0) : 0) + lost(a_t);
 }
-TAPE_HD Real Cohesion::compression(Real d, Real xi) const { return -dhat * BarrierLaw{kappa, dhat}.at(d, xi, 4 / dhat).slope; }
+TAPE_HD Real Cohesion::compression(const ContactPair& pair, Real d) const {
+  return -dhat * BarrierLaw{pair.kappa, dhat}.at(d, pair.xi, 4 / dhat).slope;
+}
 }  // namespace tape

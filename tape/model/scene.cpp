@@ -12,11 +12,19 @@ Real Scene::dhat() const {
   return smallest;
 }
 
-Real Scene::mu(int a, int b) const {
-  for (const FrictionPair& f : frictions)
-    if ((f.a == a && f.b == b) || (f.a == b && f.b == a)) return f.mu;
-  return std::sqrt(materials[static_cast<std::size_t>(a)].mu * materials[static_cast<std::size_t>(b)].mu);
+namespace {
+Real value_or(const std::vector<MaterialPair>& pairs, int a, int b, Real fallback) {
+  for (const MaterialPair& p : pairs)
+    if ((p.a == a && p.b == b) || (p.a == b && p.b == a)) return p.value;
+  return fallback;
 }
+}  // namespace
+
+Real Scene::mu(int a, int b) const {
+  return value_or(frictions, a, b, std::sqrt(materials[static_cast<std::size_t>(a)].mu * materials[static_cast<std::size_t>(b)].mu));
+}
+
+Real Scene::kappa(int a, int b) const { return value_or(barriers, a, b, contact.kappa); }
 
 Adhesion Scene::adhesion(int first, int second) const {
   for (const AdhesivePair& p : adhesives) {

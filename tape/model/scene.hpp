@@ -44,7 +44,7 @@ struct ContactParams {
   template <class F>
   void fields(F&& f) {
     f("dhat", dhat, "m", Range::non_negative(), "activation distance of the barrier; 0: that of the film");
-    f("kappa", kappa, "Pa", Range::positive(), "barrier stiffness");
+    f("kappa", kappa, "Pa", Range::positive(), "barrier stiffness, unless `interfaces` names another one");
     f("guard", guard, "1", Range::above(0, 1), "reach of edge-edge pairs and of open rims, in units of dhat");
     f("ccd_gap", ccd_gap, "1", Range::above(0, 0.99), "fraction of a gap that one Newton step must leave");
     f("max_move", max_move, "m", Range::positive(), "longest way of a vertex in one Newton iteration: keeps the swept search small");
@@ -129,9 +129,10 @@ struct Material {
     f("mu", mu, "1", Range::non_negative(), "friction; a pair takes the geometric mean unless `interfaces` names it");
   }
 };
-struct FrictionPair {
+/// What an interface has in place of what its materials or the scene say.
+struct MaterialPair {
   int a = 0, b = 0;  ///< materials
-  Real mu = 0;
+  Real value = 0;
 };
 struct AdhesivePair {
   int a = 0, b = 0;   ///< materials
@@ -208,7 +209,8 @@ struct Scene {
   std::vector<Strip> strips;
   std::vector<Body> bodies;
   std::vector<Material> materials = {{"default", 0.5}};
-  std::vector<FrictionPair> frictions;
+  std::vector<MaterialPair> frictions;  ///< mu [1]
+  std::vector<MaterialPair> barriers;   ///< kappa [Pa]
   std::vector<AdhesivePair> adhesives;
   std::vector<Grip> grips;
   std::vector<AxleJoint> axles;
@@ -218,6 +220,7 @@ struct Scene {
 
   Real dhat() const;                               ///< [m] contact.dhat, or the smallest of the films' (1e-3 without strips)
   Real mu(int a, int b) const;                     ///< friction of two materials
+  Real kappa(int a, int b) const;                  ///< [Pa] stiffness of the barrier between two materials
   Adhesion adhesion(int first, int second) const;  ///< of two materials
   bool uses(AdhesionLaw law) const;                ///< whether an interface does
   bool reduces(const Strip& strip) const;          ///< whether its wound part is a rigid cluster

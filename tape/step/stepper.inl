@@ -115,7 +115,6 @@ class SideStepper final : public Stepper {
     begin(state, world_.setup.scene.time.dt);
     prescribe(Drive::at(world_, state, 0));
     take_up(state);
-    parallel_for(direction_.size(), stepping::Fill{direction_.span()});
     recall(state.memory);
     return stored_energy();
   }
@@ -415,8 +414,10 @@ class SideStepper final : public Stepper {
     s.normal = normals_->at(s.x);
     return objective_->remember(s, search_->samples(coordinates_->paths(now_, direction_.span())));
   }
-  /// Candidates and elements of a step that starts at now_ with this memory.
+  /// Candidates and elements of a step that starts at now_ with this memory, before it has a direction: after a front has moved, the last
+  /// one's blocks are other coordinates.
   void recall(const EffectMemory& memory) {
+    parallel_for(direction_.size(), stepping::Fill{direction_.span()});
     if (!search_) return;
     replaced_ = pairs_out_of_contact(memory);
     search_->set_bonded(replaced_);  // makes the search start anew: its past must not change the order of sums
@@ -427,7 +428,6 @@ class SideStepper final : public Stepper {
   /// Newton's method from now_ == start_, the start of a step at `state`, to its end.
   bool newton(const State& state, StepReport& report) {
     const NewtonParams& params = world_.setup.newton;
-    parallel_for(direction_.size(), stepping::Fill{direction_.span()});
     recall(state.memory);
     if (state.time == 0) recall(remember(0));  // at the start of a run pairs in the contact band are as engaged as new ones
     objective_->begin_step(view(now_));
@@ -566,7 +566,7 @@ class SideStepper final : public Stepper {
         const std::vector<Real> limits =
             search_->limit_steps(coordinates_->paths(now_, direction_.span()), {.eta = world_.setup.scene.contact.ccd_gap});
         limit_ *= *std::ranges::min_element(limits);
-        search_->scale(direction_.span());
+        search_->scale(coordinates_->paths(now_, direction_.span()), direction_.span());
       }
     }
     const Stopwatch watch(line_search_ms_);

@@ -54,6 +54,9 @@ SurfaceMesh make_surface(const Scene& scene, const Assembly& a) {
   check_cells(a, scene);
   SurfaceMesh mesh;
   mesh.materials = static_cast<int>(scene.materials.size());
+  mesh.kappa.clear();
+  for (int m = 0; m < mesh.materials; ++m)
+    for (int n = 0; n < mesh.materials; ++n) mesh.kappa.push_back(scene.kappa(m, n));
   const auto owners = [&](int first, int count) {
     return std::vector<VertexOwner>(a.owner.begin() + first, a.owner.begin() + first + count);
   };

@@ -20,7 +20,7 @@ constexpr Real kMargin = 3e-5;                // [m] slack of the trust boxes
 /// The barrier with its sums: 3-vectors by vertex, 3x3 blocks by pair of vertices.
 class Barriers {
  public:
-  Barriers(Span<const ContactPair> candidates, const StateView& s) : term_{candidates, 1e4} {
+  Barriers(Span<const ContactPair> candidates, const StateView& s) : term_{candidates} {
     std::vector<int> active;
     std::vector<std::uint64_t> rows, keys;
     for (int i = 0; i < candidates.size; ++i) {

@@ -120,6 +120,7 @@ void EffectWorld::add_pairs() {
                      .interface = interface,
                      .xi = xi,
                      .dhat = dhat,
+                     .kappa = scene.contact.kappa,
                      .weight = 4e-6,
                      .mollifier = kind == PairKind::edge_edge ? 1e-3 * length4 : 0,
                      .sharing = {{2, 2, 1}, {6, 5, 0}},

@@ -10,8 +10,9 @@ using namespace tape::render;
 
 namespace {
 const LookAtSettings kLookAt{.eye{0.4, -0.5, 0.3}, .target{0.02, 0.01, -0.03}, .fov = 40};
-const PinholeSettings kOffCentre{
-    .fx = 500, .fy = 520, .cx = 250.3, .cy = 90.7, .width = 400, .height = 300, .position{0.1, 0.2, 0.9}, .rotation{2.8, 0.3, -0.4}};
+const PinholeSettings kOffCentre{.calibration{.fx = 500, .fy = 520, .cx = 250.3, .cy = 90.7, .width = 400, .height = 300},
+                                 .position{0.1, 0.2, 0.9},
+                                 .rotation{2.8, 0.3, -0.4}};
 
 /// Square of half width r [m] about p that faces the camera.
 Mesh marker(const Camera& camera, const Vec3& p, Real r) {
@@ -55,7 +56,7 @@ TEST(Camera, ACalibratedCameraMayBeDrawnInAnotherResolution) {
 }
 
 TEST(Camera, AnUnturnedPinholeLooksAlongZWithYDown) {
-  const Camera camera = Camera::make(PinholeSettings{.fx = 600, .fy = 500, .cx = 420, .cy = 230});
+  const Camera camera = Camera::make(PinholeSettings{.calibration{.fx = 600, .fy = 500, .cx = 420, .cy = 230}});
   const Vec2 pixel = camera.project({0.2, 0.1, 2});  // 600 * 0.1 + 420, 500 * 0.05 + 230
   EXPECT_NEAR(pixel.x(), 480, 1e-9);
   EXPECT_NEAR(pixel.y(), 255, 1e-9);
@@ -87,5 +88,5 @@ TEST(Camera, SettingsThatSpanNoViewAreRefused) {
   EXPECT_THROW(Camera::make(LookAtSettings{.eye{0, 0, 1}, .target{0, 0, 0}, .up{0, 0, 1}}, 100, 100), InputError);
   EXPECT_THROW(Camera::make(LookAtSettings{.eye{0, 0, 1}, .target{0, 0, 1}}, 100, 100), InputError);
   EXPECT_THROW(Camera::make(LookAtSettings{.fov = 180}, 100, 100), SettingsError);
-  EXPECT_THROW(Camera::make(PinholeSettings{.fx = 0}), SettingsError);
+  EXPECT_THROW(Camera::make(PinholeSettings{.calibration{.fx = 0}}), SettingsError);
 }

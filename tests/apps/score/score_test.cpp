@@ -141,3 +141,15 @@ TEST(Score, TheIntervalOfAReductionDrawsTheEpisodesOfBothTogether) {
   EXPECT_NEAR(found.interval.high, 0.2, 1e-12);
   EXPECT_THROW(reduction(model, model_score({"coh-f", {{10}}})), InputError);
 }
+TEST(Score, RepeatsAreJoinedByTheTimesOfTheirFrames) {
+  std::vector<FrameError> whole = frames_with_errors({{3, 10}, {4, 20}, {5, 60}}), lacking = frames_with_errors({{4, 40}, {5, 80}});
+  whole[2].in_front = false;
+  whole[1].estimated = lacking[0].estimated = true;
+  const std::vector<FrameMean> mean = mean_errors({whole, lacking});
+  ASSERT_EQ(mean.size(), 3u);
+  EXPECT_EQ(mean[0].error, 10) << "in one alone";
+  EXPECT_EQ(mean[1].error, 30);
+  EXPECT_TRUE(mean[1].estimated && !mean[0].estimated);
+  EXPECT_EQ(mean[2].error, 80) << "not in front in the other";
+  EXPECT_EQ(mean[2].time, 5);
+}

@@ -103,6 +103,30 @@ TEST_F(ReplayFile, ACalibrationOfAnotherResolutionIsRefused) {
   EXPECT_EQ(replay.episode.camera("ego", "").poses[0].position, small_episode().cameras[0].poses[0].position) << "its pose stays";
   refused(kHead + "calibration: hd.yaml\n" + kJoints, {":5: hd.yaml: landmarks of camera ego", "1280 x 720 px", "848 x 480 px"});
 }
+TEST_F(ReplayFile, AStarStandsForAnyTextAndLaterEntriesOverrideEarlierOnes) {
+  const std::string shoulder = "  \"sh*er\": {drives: \"arm:j1\", unit: deg}\n", slide = "  slide: {drives: arm:rail, unit: mm}\n",
+                    thumb = "  \"*umb\": {drives: \"hand:*\", unit: 1, scale: 1.2}\n", none = "  \"*\": none\n";
+  const Replay replay = read(kHead + "joints:\n" + shoulder + slide + thumb);
+  ASSERT_EQ(replay.joints.size(), 3u);
+  EXPECT_EQ(replay.joints[0].recorded + " " + replay.joints[0].joint, "shoulder j1");
+  EXPECT_EQ(replay.joints[2].recorded + " " + replay.joints[2].joint, "thumb th") << "what the star stood for";
+  EXPECT_EQ(read(kHead + "joints:\n" + none + slide).joints.size(), 1u);
+  refused(kHead + "joints:\n" + slide + none, {"joints.slide", "moves nothing: entries after it take all its joints"});
+  refused(kHead + "joints:\n" + slide + thumb + "  \"sh*err\": none\n", {"joints.sh*err", "the recording has no such joint"});
+}
+TEST_F(ReplayFile, SettingsOfTheSceneMayComeWithIt) {
+  EXPECT_EQ(read(kHead + "set: {time.dt: 0.005, model: coh-r}\n" + kJoints).overrides,
+            (std::vector<std::string>{"time.dt=0.005", "model=coh-r"}));
+}
+TEST_F(ReplayFile, AScriptDoesNotMoveARobotThatTheRecordingMoves) {
+  RobotScene robots = arm_and_hand();
+  for (RobotPart& part : robots.robots)
+    part.motions.push_back({[](const robot::VecX&) { return robot::JointTrajectory{.joints = {}, .times = {0}, .knots = {}}; }});
+  add_motions(read(kHead + replaced(kJoints, "{drives: hand:bend, unit: 1, scale: 1.2}", "none")), robots);
+  EXPECT_EQ(robots.robots[0].motions.size(), 1u) << "that of the recording";
+  EXPECT_NEAR(RobotScript(robots.robots[0], {}).commands_at(1)[0].position, 0.02, 1e-12) << "the slide: 10 + 10 t mm";
+  EXPECT_EQ(robots.robots[1].motions.size(), 1u) << "its own";
+}
 TEST_F(ReplayFile, MotionThatTheSceneCannotMakeIsRefused) {
   not_driven(kHead + replaced(kJoints, "arm:rail", "leg:rail"), {":7: leg:rail is of no robot of the scene"});
   not_driven(kHead + replaced(kJoints, "arm:rail", "arm:rial"), {":7: arm:rial is no joint of that robot; did you mean rail?"});

@@ -203,3 +203,26 @@ TEST(Exchange, APairGoesOverToTheTapeSolverOnlyWhereTheBarrierDoesNotActYet) {
     EXPECT_EQ(both.link(0, 0).normal.force.norm(), 0) << gap << ": nothing presses them together";
   }
 }
+TEST(Exchange, PosedLinksAreWhereTheyAreToldToBeWhateverTheyPush) {
+  RobotScene scene = finger();
+  scene.exchange.schedule = Schedule::posed;
+  scene.world.gravity = Vec3(0, 0, -9.81);  // no drive has to bear it
+  scene.robots[0].motions = {{[](const robot::VecX&) {
+                                return robot::JointTrajectory{
+                                    .joints = {"hinge"},
+                                    .times = {0, 0.05, 0.1},
+                                    .knots = {robot::VecX::Zero(1), robot::VecX::Constant(1, 0.01), robot::VecX::Constant(1, 0.06)},
+                                    .between = robot::JointTrajectory::Between::linear};
+                              },
+                              0, 0.1}};
+  Coupled both(free_strip(0.01, 1e-4), scene);
+  for (int k = 1; k <= 12; ++k) {
+    ASSERT_TRUE(both.step()) << both.report.failure;
+    const Real t = 0.01 * k, told = t < 0.05 ? 0.2 * t : std::min(0.06, 0.01 + (t - 0.05));
+    EXPECT_NEAR(both.bullet().state(0).q[0], told, 1e-12) << k;
+    EXPECT_NEAR(both.bullet().state(0).v[0], k <= 5 ? 0.2 : k <= 10 ? 1 : 0, 1e-9) << k;
+    EXPECT_LT(both.stepper->exchange().mismatch, 1e-6) << k;
+    EXPECT_EQ(both.bullet().drive_effort(0).norm(), 0);
+  }
+  EXPECT_LT(both.report.momentum.z(), 0) << "the strip has been pushed down";
+}

@@ -131,6 +131,12 @@ materials: {wood: {mu: 0.4}, film: {mu: 0.9}}
   const tape::Scene reversed = read(text + "interfaces: [{between: [tape, b], mu: 0.2}, {between: [film, wood], mu: 0.1}]\n");
   EXPECT_EQ(mu(reversed, 0), 0.1);
   EXPECT_EQ(mu(reversed, 1), 0.1) << "the later entry holds for all of the wood";
+  const auto kappa = [](const tape::Scene& s, int body) { return s.kappa(s.strips[0].material, s.bodies[body].material); };
+  EXPECT_EQ(kappa(plain, 0), tape::ContactParams{}.kappa);
+  const tape::Scene stiff = read(text + "interfaces: [{between: [film, wood], kappa: 2e5}, {between: [tape, b], mu: 0.2}]\n");
+  EXPECT_EQ(kappa(stiff, 0), 2e5);
+  EXPECT_EQ(kappa(stiff, 1), 2e5) << "a thing with a material of its own keeps what was said before";
+  EXPECT_EQ(stiff.kappa(stiff.bodies[0].material, stiff.bodies[1].material), tape::ContactParams{}.kappa);
 }
 
 TEST(ReadScene, TheScriptRunsInOrderAndBesidesWhereItSaysSo) {

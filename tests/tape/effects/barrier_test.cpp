@@ -20,7 +20,7 @@ struct Pair {
   ContactPair pair;
   Barrier barrier;
   Pair(PairKind kind, std::vector<Vec3> at, Real mollifier = 0)
-      : x(std::move(at)), pair{{0, 1, 2, 3}, kind, 0, 9e-5, kDhat, kUnit, mollifier, {}}, barrier{{&pair, 1}, 1} {}
+      : x(std::move(at)), pair{{0, 1, 2, 3}, kind, 0, 9e-5, kDhat, 1, kUnit, mollifier, {}}, barrier{{&pair, 1}} {}
   Pair(const Pair&) = delete;
   Pair& operator=(const Pair&) = delete;
   StateView view() const {
@@ -114,13 +114,14 @@ struct Fan {
                        .interface = 0,
                        .xi = 9e-5,
                        .dhat = kDhat,
+                       .kappa = 1,
                        .weight = kUnit,
                        .mollifier = 0,
                        .sharing = {{2, 1, 2}, {6, 0, 0}}});
   }
   template <class F>
   auto sum(const F& f) const {
-    Barrier barrier{{pairs.data(), 6}, 1};
+    Barrier barrier{{pairs.data(), 6}};
     StateView s{};
     s.x = {x.data(), static_cast<int>(x.size())};
     auto total = f(barrier, s, 0);

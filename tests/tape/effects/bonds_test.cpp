@@ -22,11 +22,12 @@ struct Bonded {
                    .interface = 0,
                    .xi = kXi,
                    .dhat = kDhat,
+                   .kappa = 1e4,
                    .weight = kArea,
                    .mollifier = 0,
                    .sharing = {},
                    .triangle = 7};
-  Bonds bonds{{}, kDhat, 1e4};
+  Bonds bonds{{}, kDhat};
   Bonds::Memory memory{};
   Bonds::Element element{};
 

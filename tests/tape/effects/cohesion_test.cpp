@@ -19,12 +19,13 @@ struct Stuck {
                    .interface = 0,
                    .xi = kXi,
                    .dhat = kDhat,
+                   .kappa = 1e4,
                    .weight = 1e-6,
                    .mollifier = 0,
                    .sharing = {},
                    .triangle = 7};
   Real dt = 0.01;
-  Cohesion cohesion{{}, kDhat, 1e4};
+  Cohesion cohesion{{}, kDhat};
   Cohesion::Element element;
 
   StateView view(const std::vector<Vec3>& at) {

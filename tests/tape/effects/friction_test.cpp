@@ -44,7 +44,7 @@ Published read_state(std::istream& in) {
     p.gradient.segment<3>(3 * v) = read_vector(in);
   }
   for (int k = 0; k < pairs; ++k) {
-    Published::Pair q{{{0, 0, 0, 0}, PairKind::vertex_triangle, 0, 0, std::sqrt(p.dhat2), 1, 0, {}}, 1, 0};
+    Published::Pair q{{{0, 0, 0, 0}, PairKind::vertex_triangle, 0, 0, std::sqrt(p.dhat2), 1, 1, 0, {}}, 1, 0};
     int edge_edge;
     for (int& v : q.pair.v) in >> v;
     in >> edge_edge >> q.multiplicity >> q.normal_force;
@@ -87,7 +87,7 @@ struct Lagged {
   std::vector<Friction::Element> elements;
   Friction friction;
   StateView view{};
-  explicit Lagged(const Published& p) : friction{{}, std::sqrt(p.eps2), SlipFrame::fixed, {{}, 1}} {
+  explicit Lagged(const Published& p) : friction{{}, std::sqrt(p.eps2), SlipFrame::fixed, {}} {
     view.dt = 1;
     view.x = view.x_start = span(p.lagged);
     view.mu = {&p.mu, 1};
@@ -109,9 +109,9 @@ struct Lagged {
 struct Slider {
   std::vector<Vec3> start, x;
   Real mu = 0.5;
-  ContactPair pair{{0, 1, 2, 3}, PairKind::vertex_triangle, 0, 0, 1e-3, 1e-6, 0, {}};
+  ContactPair pair{{0, 1, 2, 3}, PairKind::vertex_triangle, 0, 0, 1e-3, 1e6, 1e-6, 0, {}};
   std::vector<Friction::Element> elements;
-  Friction friction{{}, 1e-4, SlipFrame::turning, {{}, 1e6}};
+  Friction friction{{}, 1e-4, SlipFrame::turning, {}};
   explicit Slider(Real slip) : start{{2e-4, 2e-4, 5e-4}, {0, 0, 0}, {1e-3, 0, 0}, {0, 1e-3, 0}}, x(start) {
     Friction::Element e;
     if (friction.lag(pair, view(1), e)) elements.push_back(e);
@@ -213,7 +213,7 @@ TEST(Friction, WithoutMuOrContactOrBetweenParallelEdgesThereIsNone) {
   s.x[0].z() = 1.001e-3;
   EXPECT_FALSE(s.friction.lag(s.pair, s.view(1), e));
   s.x = {{0, 0, 5e-4}, {1e-3, 1e-5, 5e-4}, {0, 0, 0}, {1e-3, 0, 0}};
-  const ContactPair edges{{0, 1, 2, 3}, PairKind::edge_edge, 0, 0, 1e-3, 1e-6, 1e-3 * 1e-6 * 1e-6, {}};
+  const ContactPair edges{{0, 1, 2, 3}, PairKind::edge_edge, 0, 0, 1e-3, 1e6, 1e-6, 1e-3 * 1e-6 * 1e-6, {}};
   EXPECT_FALSE(s.friction.lag(edges, s.view(1), e));
 }
 TEST(Friction, IsNeededOnlyWhereSomethingCanTouchAndRub) {

@@ -1,0 +1,21 @@
+#pragma once
+#include "apps/report/json.hpp"
+#include "apps/tapesim/run_folder.hpp"
+#include "apps/tapesim/scene_input.hpp"
+#include "cosim/run/summary.hpp"
+
+namespace tape::tapesim {
+/// By a name that the command line has checked.
+Backend backend_of(const std::string& name);
+bool runs_on_cuda(Backend backend);
+
+using OnStep = std::function<void(const State&, const cosim::StepRow&)>;
+/// Advances a state to the end of the scene; steps and recorded states go into the folder.
+/// @param steps  at most so many; negative: no limit  @param on_step  after each completed step
+cosim::RunLog simulate_into(RunFolder& folder, LoadedWorld& loaded, Stepper& stepper, State& state, int steps, const OnStep& on_step);
+
+void write_report(const RunFolder& folder, const report::Json& json);
+/// Gives the files of a run their names, report.json last. @return the report
+report::Json commit_run(RunFolder& folder, const State& end, const LoadedWorld& loaded, const report::Provenance& provenance,
+                        const cosim::RunSummary& summary);
+}  // namespace tape::tapesim

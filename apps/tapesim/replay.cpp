@@ -1,0 +1,172 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <set>
+
+#include "apps/tapesim/interrupt.hpp"
+#include "apps/tapesim/progress.hpp"
+#include "apps/tapesim/replay_table.hpp"
+#include "cosim/run/new_file.hpp"
+#include "tape/core/execution.hpp"
+
+namespace tape::tapesim {
+namespace {
+namespace fs = std::filesystem;
+
+struct ReplayArguments {
+  std::string file, out, model, record, backend = "auto";
+  std::vector<std::string> overrides;
+  int threads = 0, repeats = 0;
+};
+
+/// An episode with a model, not yet run.
+struct Case {
+  fs::path episode;
+  std::string model;
+};
+
+/// A run that is to be made, or was made before.
+struct Slot {
+  Case what;
+  std::string key;
+  ReplayRun run;
+  bool done = false;
+};
+
+/// The runs of a plan, and what of them is kept from before.
+class ReplayGrid {
+ public:
+  /// Loads every combination: what is wrong with any is found before the first run.
+  ReplayGrid(ReplayPlan plan, fs::path folder, Backend backend)
+      : plan_(std::move(plan)), folder_(std::move(folder)), backend_(backend), store_(folder_ / "runs.json") {
+    std::set<std::string> names;
+    for (const fs::path& episode : plan_.episodes) {
+      bool first = true;
+      for (const std::string& model : plan_.models) {
+        const LoadedReplay loaded = load_replay(episode, model, plan_.overrides);
+        if (first && !names.insert(loaded.replay.name).second)
+          throw InputError(episode.string() + ": another episode is named " + loaded.replay.name + ", too");
+        if (std::exchange(first, false)) introduce(loaded);
+        add(loaded, {episode, model});
+      }
+    }
+  }
+
+  /// @param record  FILE.h5 that the run becomes an episode in; empty: none  @return false if interrupted
+  bool run(const std::string& record) {
+    if (!record.empty() && slots_.size() != 1)
+      throw InputError("--record: one episode, one model and one repeat make an episode, not more");
+    if (!record.empty()) slots_.front().done = false;
+    cosim::make_folder(folder_);
+    remember_interrupts();
+    Progress progress("replay " + plan_.name, steps_);
+    for (Slot& slot : slots_) {
+      if (slot.done) continue;
+      LoadedReplay loaded = load_replay(slot.what.episode, slot.what.model, plan_.overrides);
+      const std::string what = fmt::format("{} {} {}", slot.run.episode, slot.run.model, slot.run.repeat);
+      const OnStep on_step = [&](const State& now, const cosim::StepRow& row) {
+        progress.update(++steps_made_, fmt::format("{}, t {:.2f} s, {:.0f} ms/step", what, now.time, row.report.wall_ms));
+      };
+      const fs::path folder = folder_ / slot.run.episode / slot.run.model / std::to_string(slot.run.repeat);
+      if (!simulate_replay(loaded, folder, record, backend_, on_step, slot.run)) return false;
+      keep(store_, slot.key, slot.run);
+      slot.done = true;
+    }
+    return true;
+  }
+
+  ReplayResults results() const {
+    ReplayResults results = so_far_;
+    for (const Slot& slot : slots_)
+      if (slot.done) results.runs.push_back(slot.run);
+    return results;
+  }
+  std::size_t size() const { return slots_.size(); }
+  const ReplayPlan& plan() const { return plan_; }
+
+ private:
+  void introduce(const LoadedReplay& loaded) {
+    const cosim::Replay& replay = loaded.replay;
+    so_far_.episodes.push_back(replay.name);
+    so_far_.synthetic = so_far_.synthetic || replay.episode.synthetic();
+    so_far_.lead_in = std::max(so_far_.lead_in, replay.params.lead_in);
+    fmt::print("{}: {}\n", replay.name, replay.episode.origin.empty() ? "of unknown origin" : replay.episode.origin);
+    for (const std::string& remark : cosim::remarks(replay.episode)) fmt::print("{}: note: {}\n", replay.name, remark);
+  }
+  void add(const LoadedReplay& loaded, const Case& what) {
+    const std::string model = loaded.model();
+    if (std::ranges::find(so_far_.models, model) == so_far_.models.end()) so_far_.models.push_back(model);
+    if (what.model == plan_.baseline) so_far_.baseline = model;
+    for (int repeat = 1; repeat <= plan_.repeats; ++repeat) {
+      Slot slot{what, key_of(loaded, repeat, backend_), {.episode = loaded.replay.name, .model = model, .repeat = repeat}};
+      slot.done = find(store_, slot.key, loaded.replay, slot.run);
+      if (!slot.done) steps_ += cosim::planned_steps(loaded.loaded.world.setup.scene);
+      slots_.push_back(std::move(slot));
+    }
+  }
+
+  ReplayPlan plan_;
+  fs::path folder_;
+  Backend backend_;
+  RunStore store_;
+  std::vector<Slot> slots_;
+  ReplayResults so_far_{};  // without its runs
+  int steps_ = 0, steps_made_ = 0;
+};
+
+ReplayPlan planned(const ReplayArguments& arguments) {
+  ReplayPlan plan = load_plan(arguments.file);
+  if (!arguments.model.empty()) plan.models = {arguments.model}, plan.baseline = arguments.model;
+  if (arguments.repeats > 0) plan.repeats = arguments.repeats;
+  plan.overrides.insert(plan.overrides.end(), arguments.overrides.begin(), arguments.overrides.end());
+  return plan;
+}
+
+void print_results(const ReplayPlan& plan, const ReplayResults& results) {
+  fmt::print(
+      "replay {}: error of the hub's landmark in the undistorted picture, from {} s on; mean over the frames of a run, its repeats, "
+      "then the episodes; 95 % by bootstrap over the episodes; reduction against {}\n",
+      plan.name, report::rounded(results.lead_in), results.baseline);
+  if (results.synthetic) fmt::print("The episodes are synthetic: a simulation played the real world. No robot was recorded.\n");
+  fmt::print("{}", report::to_text(model_table(plan, results, report::rounded)));
+  for (const ReplayRun& run : results.runs)
+    if (!run.failure.empty()) fmt::print("  {} {} {} failed at {}\n", run.episode, run.model, run.repeat, run.failure);
+}
+
+int replay(const ReplayArguments& arguments) {
+  set_threads(arguments.threads);
+  ReplayPlan plan = planned(arguments);
+  const fs::path folder = arguments.out.empty() ? "out/" + plan.name : arguments.out;
+  ReplayGrid grid(std::move(plan), folder, backend_of(arguments.backend));
+  const bool whole = grid.run(arguments.record);
+  const ReplayResults results = grid.results();
+  if (!whole) fmt::print("interrupted after {} of {} runs; to go on, give the same command again\n", results.runs.size(), grid.size());
+  if (results.runs.empty()) return kInterrupted;
+  print_results(grid.plan(), results);
+  cosim::write_text(folder / "replay.csv", report::to_csv(model_table(grid.plan(), results, tape::to_text)));
+  cosim::write_text(folder / "runs.csv", report::to_csv(run_table(results)));
+  cosim::write_text(folder / "frames.csv", report::to_csv(frame_table(results)));
+  fmt::print("{}\n", (folder / "{replay,runs,frames}.csv").string());
+  if (!whole) return kInterrupted;
+  const bool failed = std::ranges::any_of(results.runs, [](const ReplayRun& run) { return !run.failure.empty(); });
+  return failed ? kFailed : kDone;
+}
+}  // namespace
+
+void add_replay(CLI::App& app, Action& chosen) {
+  auto arguments = std::make_shared<ReplayArguments>();
+  CLI::App* command =
+      app.add_subcommand("replay", "moves the robots of a scene as recorded, and scores the simulated tape in the pictures of a camera");
+  command->add_option("EPISODE", arguments->file, "EPISODE.yaml, or a file that names several, models and repeats (YAML)")->required();
+  command->add_option("--out", arguments->out, "folder for replay.csv, runs.csv, frames.csv and that of each run (default: out/<name>)");
+  command->add_option("--set", arguments->overrides, "set a key of the scene in every run; may be repeated")->allow_extra_args(false);
+  command->add_option("--model", arguments->model, "this model alone: coh-f, bond-f, coh-r or bond-r");
+  command->add_option("--repeats", arguments->repeats, "runs of each episode with each model")->check(CLI::Range(1, 100));
+  command->add_option("--record", arguments->record, "also writes the run as a synthetic episode, FILE.h5 and FILE.yaml, as run does");
+  command->add_option("--backend", arguments->backend, "auto, cpu or cuda")->check(CLI::IsMember({"auto", "cpu", "cuda"}));
+  command->add_option("--threads", arguments->threads, "threads of the CPU back end; 0: all cores")->check(CLI::Range(0, 1024));
+  command->callback([arguments, &chosen] { chosen = [arguments] { return replay(*arguments); }; });
+}
+}  // namespace tape::tapesim

@@ -1,0 +1,169 @@
+#include "apps/tapesim/replay_run.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "apps/report/table.hpp"
+#include "apps/tapesim/episode_recorder.hpp"
+#include "apps/tapesim/hub_watch.hpp"
+#include "cosim/exchange/exchange.hpp"
+#include "cosim/run/new_file.hpp"
+#include "cosim/scene/scene_file.hpp"
+#include "tape/core/execution.hpp"
+#include "tape/core/hash.hpp"
+
+namespace tape::tapesim {
+namespace {
+using Json = RunStore::Json;
+
+std::string calibration_text(const cosim::Calibration& c) {
+  const cosim::Distortion& d = c.lens;
+  return fmt::format("{} {} {} {} {} {} {} {} {} {} {}", c.fx, c.fy, c.cx, c.cy, c.width, c.height, d.k1, d.k2, d.p1, d.p2, d.k3);
+}
+
+void score_frames(const cosim::Replay& replay, ReplayRun& run) {
+  if (!run.frames.empty()) run.score = score::run_score(run.frames, replay.params.lead_in);
+}
+
+/// One row a frame.
+std::string errors_csv(const cosim::Replay& replay, const ReplayRun& run) {
+  report::Table table{{"time_s", "state_offset_s", "kind", "estimated", "real_u_px", "real_v_px", "simulated_u_px", "simulated_v_px",
+                       "error_px", "counted", "data"},
+                      {}};
+  for (const score::FrameError& f : run.frames) {
+    const auto simulated = [&](Real value) { return f.in_front ? to_text(value) : std::string(); };
+    table.rows.push_back({to_text(f.time), to_text(f.time_offset), to_text(f.kind), f.estimated ? "1" : "0", to_text(f.real.x()),
+                          to_text(f.real.y()), simulated(f.simulated.x()), simulated(f.simulated.y()), simulated(f.error()),
+                          f.in_front && f.time >= replay.params.lead_in ? "1" : "0",
+                          replay.episode.synthetic() ? "synthetic" : "recorded"});
+  }
+  return report::to_csv(table);
+}
+}  // namespace
+
+std::string LoadedReplay::model() const {
+  const auto& model = loaded.world.setup.scene.model;
+  return model ? to_text(*model) : "none";
+}
+
+const cosim::LandmarkTrack* LoadedReplay::landmarks() const {
+  for (const cosim::LandmarkTrack& track : replay.episode.landmarks)
+    if (track.camera == replay.camera) return &track;
+  return nullptr;
+}
+
+LoadedReplay load_replay(const std::filesystem::path& episode, const std::string& model, const std::vector<std::string>& overrides) {
+  const cosim::SceneFile file = cosim::SceneFile::load(episode);
+  cosim::Replay replay = cosim::read_replay(file);
+  if (replay.name.find('/') != std::string::npos) file["episode"].fail("the name holds no slash: it names a folder of results");
+  SceneArguments scene{.scene = replay.scene.string(), .overrides = replay.overrides, .model = model};
+  scene.overrides.insert(scene.overrides.end(), overrides.begin(), overrides.end());
+  LoadedWorld loaded = load_world(scene, Rolls::settle, [&](cosim::RunInput& input) { cosim::set_up(replay, input); });
+  LoadedReplay result{std::move(replay), std::move(scene), std::move(loaded)};
+  if (result.replay.camera.empty()) return result;
+  const cosim::LandmarkTrack* track = result.landmarks();
+  if (!track) file["camera"].fail("has no landmarks in the recording; without a camera the episode is replayed and not scored");
+  const Real end = result.replay.episode.common().end;
+  for (const cosim::Landmark& mark : track->landmarks)
+    if (mark.visible && mark.time > end + score::kMaxTimeOffset)
+      file["recording"].fail(fmt::format("has a landmark at {:g} s, after its motions, which end at {:g} s", mark.time, end));
+  try {
+    HubShape(result.loaded.world, track->body);
+  } catch (const InputError& e) {
+    file["scene"].fail(e.what());
+  }
+  return result;
+}
+
+std::string key_of(const LoadedReplay& replay, int repeat, Backend backend) {
+  const cosim::Replay& r = replay.replay;
+  Hash hash;
+  const auto add = [&](const std::string& text) { hash.add(text.data(), text.size()); };
+  add(fmt::format("{} {} {} {} {} {}\n", TAPE_VERSION, threads(), runs_on_cuda(backend), repeat, replay.model(), r.start));
+  add(cosim::read_whole_file(r.scene, r.scene.string()) + cosim::read_whole_file(r.recording, r.recording.string()));
+  add(fmt::format("{}\n", fmt::join(replay.scene.overrides, "\n")));
+  for (const cosim::DrivenJoint& joint : r.joints)
+    add(fmt::format("{} {} {} {} {} {}\n", joint.recorded, joint.robot, joint.joint, joint.sign, joint.scale, joint.offset));
+  add(to_text(r.params.follow));
+  if (!r.camera.empty()) add(r.camera + calibration_text(r.episode.camera(r.camera, r.name).calibration));
+  add(report::settings_json(replay.loaded.world.setup, replay.loaded.input.run.robots).dump() + State::start(replay.loaded.world).hash());
+  return hash.text();
+}
+
+bool find(const RunStore& store, const std::string& key, const cosim::Replay& replay, ReplayRun& run) {
+  return store.find(key, [&](const Json& j) {
+    ReplayRun found = run;
+    found.seconds = j.at("seconds"), found.simulated = j.at("simulated_s"), found.newton = j.at("newton_per_step");
+    found.unmet = j.at("conditions_not_met"), found.state_hash = j.at("state_hash"), found.failure = j.at("failure");
+    const std::vector<Real> ms = j.at("step_ms");
+    found.step_ms = {ms.at(0), ms.at(1), ms.at(2), ms.at(3)};
+    for (const Json& f : j.at("frames"))
+      found.frames.push_back({.time = f.at(0),
+                              .state = f.at(1),
+                              .time_offset = f.at(2),
+                              .real{f.at(3).get<Real>(), f.at(4).get<Real>()},
+                              .simulated{f.at(5).get<Real>(), f.at(6).get<Real>()},
+                              .kind = static_cast<cosim::LandmarkKind>(f.at(7).get<int>()),
+                              .estimated = f.at(8),
+                              .in_front = f.at(9)});
+    score_frames(replay, found);
+    run = std::move(found);
+  });
+}
+
+void keep(const RunStore& store, const std::string& key, const ReplayRun& run) {
+  Json frames = Json::array();
+  for (const score::FrameError& f : run.frames)
+    frames.push_back({f.time, f.state, f.time_offset, f.real.x(), f.real.y(), f.simulated.x(), f.simulated.y(), static_cast<int>(f.kind),
+                      f.estimated, f.in_front});
+  const cosim::Distribution& ms = run.step_ms;
+  store.keep(key, {{"episode", run.episode},
+                   {"model", run.model},
+                   {"repeat", run.repeat},
+                   {"seconds", run.seconds},
+                   {"simulated_s", run.simulated},
+                   {"newton_per_step", run.newton},
+                   {"conditions_not_met", run.unmet},
+                   {"state_hash", run.state_hash},
+                   {"failure", run.failure},
+                   {"step_ms", {ms.mean, ms.p50, ms.p95, ms.max}},
+                   {"frames", frames}});
+}
+
+bool simulate_replay(LoadedReplay& replay, const std::filesystem::path& path, const std::string& record, Backend backend,
+                     const OnStep& on_step, ReplayRun& run) {
+  LoadedWorld& loaded = replay.loaded;
+  const cosim::Replay& episode = replay.replay;
+  const std::unique_ptr<Stepper> stepper = cosim::make_stepper(backend, loaded.world, loaded.input.run.robots);
+  State state = State::start(loaded.world);
+  std::optional<HubWatch> watch;
+  if (const cosim::LandmarkTrack* track = replay.landmarks()) {
+    const std::string& mount = episode.episode.camera(episode.camera, episode.name).mount;
+    watch.emplace(HubShape(loaded.world, track->body),
+                  Mount(mount, loaded.world, dynamic_cast<const cosim::CoupledStepper*>(stepper.get())));
+    watch->add(state);
+  }
+  std::optional<EpisodeRecorder> recorder;
+  if (!record.empty()) recorder.emplace(record, replay.scene, loaded, *stepper, state);
+  RunFolder folder(path, loaded.world, loaded.input.run.robots, loaded.input.run.phases, state,
+                   movie::pictures_text(loaded.input.pictures));
+  const cosim::RunLog log = simulate_into(folder, loaded, *stepper, state, -1, [&](const State& now, const cosim::StepRow& row) {
+    if (watch) watch->add(now);
+    if (recorder) recorder->add(now);
+    on_step(now, row);
+  });
+  cosim::RunSummary summary = cosim::summarize(loaded.world, log, loaded.input.run.figures);
+  run.seconds = summary.wall, run.simulated = summary.sim_time, run.step_ms = summary.step_ms, run.newton = summary.newton_mean;
+  for (const cosim::Condition& condition : summary.conditions) run.unmet += !condition.met;
+  run.state_hash = summary.state_hash, run.failure = summary.failure;
+  if (watch && run.failure.empty() && !log.interrupted) {
+    run.frames = frame_errors(*replay.landmarks(), episode.episode.camera(episode.camera, episode.name), watch->seen(), episode.start);
+    score_frames(episode, run);
+    summary.figures.emplace_back("mean_error_px", run.score.mean_error);
+    cosim::write_text(folder / "errors.csv", errors_csv(episode, run));
+  }
+  commit_run(folder, state, loaded, {replay.scene.scene, TAPE_VERSION, runs_on_cuda(backend) ? "cuda" : "cpu", threads(), 0}, summary);
+  if (recorder && !log.interrupted) recorder->commit();
+  return !log.interrupted;
+}
+}  // namespace tape::tapesim

@@ -1,0 +1,108 @@
+#include "apps/tapesim/replay_table.hpp"
+
+#include <fmt/format.h>
+
+namespace tape::tapesim {
+namespace {
+constexpr const char* kNone = "";
+
+std::string data_of(const ReplayResults& results) { return results.synthetic ? "synthetic" : "recorded"; }
+
+ModelResult result_of(const ReplayResults& results, const std::string& model) {
+  ModelResult result{.model = model, .score = {}, .reduction = {}};
+  score::ModelErrors errors{model, {}};
+  Real simulated = 0;
+  bool whole = true;
+  for (const std::string& episode : results.episodes) {
+    errors.runs.emplace_back();
+    for (const ReplayRun* run : results.repeats(model, episode)) {
+      ++result.runs;
+      result.seconds += run->seconds, simulated += run->simulated;
+      result.failed += !run->failure.empty();
+      if (!run->frames.empty()) errors.runs.back().push_back(run->score.mean_error);
+    }
+    whole = whole && !errors.runs.back().empty();
+  }
+  if (whole) result.score = score::model_score(errors);
+  if (simulated > 0) result.per_simulated_second = result.seconds / simulated;
+  if (result.runs > 0) result.seconds /= result.runs;
+  return result;
+}
+}  // namespace
+
+std::vector<const ReplayRun*> ReplayResults::repeats(const std::string& model, const std::string& episode) const {
+  std::vector<const ReplayRun*> found;
+  for (const ReplayRun& run : runs)
+    if (run.model == model && run.episode == episode) found.push_back(&run);
+  return found;
+}
+
+std::vector<ModelResult> ReplayResults::by_model() const {
+  std::vector<ModelResult> all;
+  const ModelResult* base = nullptr;
+  for (const std::string& model : models) all.push_back(result_of(*this, model));
+  for (const ModelResult& result : all)
+    if (result.model == baseline && result.score) base = &result;
+  for (ModelResult& result : all)
+    if (base && result.score && &result != base) result.reduction = score::reduction(*result.score, *base->score);
+  return all;
+}
+
+report::Table model_table(const ReplayPlan& plan, const ReplayResults& results, std::string (*number)(double)) {
+  report::Table table{{"model"}, {}};
+  for (const std::string& episode : results.episodes) table.columns.push_back(episode + "_px");
+  for (const char* column : {"mean_px", "mean_low_px", "mean_high_px", "reduction_percent", "reduction_low", "reduction_high"})
+    table.columns.emplace_back(column);
+  for (const auto& [whose, errors] : plan.beside) table.columns.push_back(whose + "_px");
+  for (const char* column : {"s_per_run", "s_per_simulated_s", "runs", "failed", "data"}) table.columns.emplace_back(column);
+  for (const ModelResult& r : results.by_model()) {
+    std::vector<std::string> row{r.model};
+    for (std::size_t e = 0; e < results.episodes.size(); ++e) row.push_back(r.score ? number(r.score->episodes[e]) : kNone);
+    for (Real value : r.score ? std::vector<Real>{r.score->mean, r.score->interval.low, r.score->interval.high} : std::vector<Real>{})
+      row.push_back(number(value));
+    if (!r.score) row.insert(row.end(), 3, kNone);
+    if (r.reduction)
+      for (Real share : {r.reduction->share, r.reduction->interval.low, r.reduction->interval.high}) row.push_back(number(100 * share));
+    else
+      row.insert(row.end(), 3, kNone);
+    for (const auto& [whose, errors] : plan.beside) {
+      const auto found = errors.find(r.model);
+      row.push_back(found == errors.end() ? kNone : number(found->second));
+    }
+    for (const std::string& cell :
+         {number(r.seconds), number(r.per_simulated_second), std::to_string(r.runs), std::to_string(r.failed), data_of(results)})
+      row.push_back(cell);
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+report::Table run_table(const ReplayResults& results) {
+  report::Table table{
+      {"episode", "model", "repeat", "mean_error_px", "frames", "estimated", "not_in_front", "worst_time_offset_s", "seconds",
+       "simulated_s", "ms_mean", "ms_p50", "ms_p95", "newton_per_step", "conditions_not_met", "state_hash", "failure", "data"},
+      {}};
+  for (const ReplayRun& run : results.runs) {
+    const bool scored = !run.frames.empty();
+    const auto cell = [&](auto value) { return scored ? fmt::format("{}", value) : std::string(kNone); };
+    const score::RunScore& s = run.score;
+    table.rows.push_back({run.episode, run.model, std::to_string(run.repeat), scored ? to_text(s.mean_error) : kNone, cell(s.frames),
+                          cell(s.estimated), cell(s.not_in_front), scored ? to_text(s.worst_time_offset) : kNone, to_text(run.seconds),
+                          to_text(run.simulated), to_text(run.step_ms.mean), to_text(run.step_ms.p50), to_text(run.step_ms.p95),
+                          to_text(run.newton), std::to_string(run.unmet), run.state_hash, run.failure, data_of(results)});
+  }
+  return table;
+}
+
+report::Table frame_table(const ReplayResults& results) {
+  report::Table table{{"episode", "model", "time_s", "error_px", "estimated", "data"}, {}};
+  for (const std::string& episode : results.episodes)
+    for (const std::string& model : results.models) {
+      std::vector<std::vector<score::FrameError>> runs;
+      for (const ReplayRun* run : results.repeats(model, episode)) runs.push_back(run->frames);
+      for (const score::FrameMean& frame : score::mean_errors(runs))
+        table.rows.push_back({episode, model, to_text(frame.time), to_text(frame.error), frame.estimated ? "1" : "0", data_of(results)});
+    }
+  return table;
+}
+}  // namespace tape::tapesim

@@ -1,0 +1,36 @@
+#pragma once
+#include <optional>
+
+#include "apps/report/table.hpp"
+#include "apps/tapesim/replay_plan.hpp"
+#include "apps/tapesim/replay_run.hpp"
+
+namespace tape::tapesim {
+/// What replays of one model have come to.
+struct ModelResult {
+  std::string model;
+  std::optional<score::ModelScore> score;      ///< none unless every episode has a run that was scored
+  std::optional<score::Reduction> reduction;   ///< against the baseline, where both are scored
+  Real seconds = 0, per_simulated_second = 0;  ///< of the clock: a run, mean; and for each second of the simulation
+  int runs = 0, failed = 0;
+};
+
+/// Everything that was run, in the order of models, episodes and repeats.
+struct ReplayResults {
+  std::vector<std::string> episodes, models;  ///< by their names
+  std::string baseline;
+  bool synthetic = false;  ///< any of the episodes
+  Real lead_in = 0;        ///< [s] longest of the episodes
+  std::vector<ReplayRun> runs;
+
+  std::vector<const ReplayRun*> repeats(const std::string& model, const std::string& episode) const;
+  std::vector<ModelResult> by_model() const;
+};
+
+/// A row for each model: errors [px] by episode and mean, interval, reduction, what others report, time.
+report::Table model_table(const ReplayPlan& plan, const ReplayResults& results, std::string (*number)(double));
+/// A row for each run.
+report::Table run_table(const ReplayResults& results);
+/// A row for each frame of an episode and model: error [px], mean over the repeats.
+report::Table frame_table(const ReplayResults& results);
+}  // namespace tape::tapesim
