@@ -100,7 +100,8 @@ class ReplayGrid {
     if (std::ranges::find(so_far_.models, model) == so_far_.models.end()) so_far_.models.push_back(model);
     if (what.model == plan_.baseline) so_far_.baseline = model;
     for (int repeat = 1; repeat <= plan_.repeats; ++repeat) {
-      Slot slot{what, key_of(loaded, repeat, backend_), {.episode = loaded.replay.name, .model = model, .repeat = repeat}};
+      Slot slot{.what = what, .key = key_of(loaded, repeat, backend_), .run = {}};
+      slot.run.episode = loaded.replay.name, slot.run.model = model, slot.run.repeat = repeat;
       slot.done = find(store_, slot.key, loaded.replay, slot.run);
       if (!slot.done) steps_ += cosim::planned_steps(loaded.loaded.world.setup.scene);
       slots_.push_back(std::move(slot));

@@ -93,10 +93,8 @@ std::string key_of(const LoadedReplay& replay, int repeat, Backend backend) {
 bool find(const RunStore& store, const std::string& key, const cosim::Replay& replay, ReplayRun& run) {
   return store.find(key, [&](const Json& j) {
     ReplayRun found = run;
-    found.seconds = j.at("seconds"), found.simulated = j.at("simulated_s"), found.newton = j.at("newton_per_step");
-    found.unmet = j.at("conditions_not_met"), found.state_hash = j.at("state_hash"), found.failure = j.at("failure");
-    const std::vector<Real> ms = j.at("step_ms");
-    found.step_ms = {ms.at(0), ms.at(1), ms.at(2), ms.at(3)};
+    RunStore::read(j, found);
+    found.simulated = j.at("simulated_s"), found.state_hash = j.at("state_hash");
     for (const Json& f : j.at("frames"))
       found.frames.push_back({.time = f.at(0),
                               .state = f.at(1),
@@ -116,18 +114,10 @@ void keep(const RunStore& store, const std::string& key, const ReplayRun& run) {
   for (const score::FrameError& f : run.frames)
     frames.push_back({f.time, f.state, f.time_offset, f.real.x(), f.real.y(), f.simulated.x(), f.simulated.y(), static_cast<int>(f.kind),
                       f.estimated, f.in_front});
-  const cosim::Distribution& ms = run.step_ms;
-  store.keep(key, {{"episode", run.episode},
-                   {"model", run.model},
-                   {"repeat", run.repeat},
-                   {"seconds", run.seconds},
-                   {"simulated_s", run.simulated},
-                   {"newton_per_step", run.newton},
-                   {"conditions_not_met", run.unmet},
-                   {"state_hash", run.state_hash},
-                   {"failure", run.failure},
-                   {"step_ms", {ms.mean, ms.p50, ms.p95, ms.max}},
-                   {"frames", frames}});
+  Json j{{"episode", run.episode},       {"model", run.model},           {"repeat", run.repeat},
+         {"simulated_s", run.simulated}, {"state_hash", run.state_hash}, {"frames", frames}};
+  RunStore::write(run, j);
+  store.keep(key, j);
 }
 
 bool simulate_replay(LoadedReplay& replay, const std::filesystem::path& path, const std::string& record, Backend backend,
@@ -153,9 +143,8 @@ bool simulate_replay(LoadedReplay& replay, const std::filesystem::path& path, co
     on_step(now, row);
   });
   cosim::RunSummary summary = cosim::summarize(loaded.world, log, loaded.input.run.figures);
-  run.seconds = summary.wall, run.simulated = summary.sim_time, run.step_ms = summary.step_ms, run.newton = summary.newton_mean;
-  for (const cosim::Condition& condition : summary.conditions) run.unmet += !condition.met;
-  run.state_hash = summary.state_hash, run.failure = summary.failure;
+  run.take(summary);
+  run.simulated = summary.sim_time, run.state_hash = summary.state_hash;
   if (watch && run.failure.empty() && !log.interrupted) {
     run.frames = frame_errors(*replay.landmarks(), episode.episode.camera(episode.camera, episode.name), watch->seen(), episode.start);
     score_frames(episode, run);
@@ -163,7 +152,7 @@ bool simulate_replay(LoadedReplay& replay, const std::filesystem::path& path, co
     cosim::write_text(folder / "errors.csv", errors_csv(episode, run));
   }
   commit_run(folder, state, loaded, {replay.scene.scene, TAPE_VERSION, runs_on_cuda(backend) ? "cuda" : "cpu", threads(), 0}, summary);
-  if (recorder && !log.interrupted) recorder->commit();
+  if (recorder && run.failure.empty() && !log.interrupted) recorder->commit();
   return !log.interrupted;
 }
 }  // namespace tape::tapesim

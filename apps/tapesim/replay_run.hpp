@@ -24,14 +24,11 @@ struct LoadedReplay {
 LoadedReplay load_replay(const std::filesystem::path& episode, const std::string& model, const std::vector<std::string>& overrides);
 
 /// What came of one run.
-struct ReplayRun {
+struct ReplayRun : RunCost {
   std::string episode, model;
   int repeat = 1;
-  Real seconds = 0, simulated = 0;  ///< [s] of the clock and of the simulation
-  cosim::Distribution step_ms{};
-  Real newton = 0;  ///< iterations per step
-  int unmet = 0;    ///< conditions
-  std::string state_hash{}, failure{};
+  Real simulated = 0;  ///< [s]
+  std::string state_hash{};
   std::vector<score::FrameError> frames{};  ///< with a visible landmark; none where the episode is not scored
   score::RunScore score{};                  ///< means nothing without frames
 };

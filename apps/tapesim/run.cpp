@@ -127,7 +127,7 @@ int run(const RunArguments& arguments) {
   const cosim::RunSummary summary = cosim::summarize(loaded.world, log, loaded.input.run.figures);
   const report::Provenance provenance{arguments.scene.scene, TAPE_VERSION, runs_on_cuda(backend) ? "cuda" : "cpu", threads(), first_step};
   report::Json json = commit_run(folder, state, loaded, provenance, summary);
-  if (recorder) recorder->commit();
+  if (recorder && log.failure.empty() && !log.interrupted) recorder->commit();
   print_summary(summary, folder);
   if (log.interrupted) print_how_to_resume(arguments, state, folder);
   const bool filmed = log.interrupted || !arguments.video || end_video(loaded, folder, live, json);

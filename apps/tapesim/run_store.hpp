@@ -4,7 +4,19 @@
 #include <optional>
 #include <string>
 
+#include "cosim/run/summary.hpp"
+
 namespace tape::tapesim {
+/// What a run of a grid took, and how it went.
+struct RunCost {
+  Real seconds = 0;  ///< of the clock
+  cosim::Distribution step_ms{};
+  Real newton = 0;  ///< iterations per step
+  int unmet = 0;    ///< conditions
+  std::string failure{};
+  void take(const cosim::RunSummary& summary);
+};
+
 /// Keeps what finished runs have come to in a file, so that a grid of them goes on where it was interrupted.
 class RunStore {
  public:
@@ -24,6 +36,9 @@ class RunStore {
     }
   }
   void keep(const std::string& key, const Json& run) const;
+  static void write(const RunCost& cost, Json& run);
+  /// @throws nlohmann::json::exception where something is missing
+  static void read(const Json& run, RunCost& cost);
 
  private:
   std::optional<Json> find(const std::string& key) const;

@@ -42,7 +42,8 @@ std::string key_of(const Study& study, const std::vector<std::string>& values, c
 
 /// Runs a combination, unless it is kept. A numerical failure is a result; bad input is an error of the study.
 StudyRun run_one(const Study& study, const std::vector<std::string>& values, const StudyStore& store) {
-  StudyRun result{.values = values};
+  StudyRun result;
+  result.values = values;
   LoadedWorld loaded = load_combination(study, values);
   State state = State::start(loaded.world);
   const std::string key = key_of(study, values, loaded, state);
@@ -51,12 +52,7 @@ StudyRun run_one(const Study& study, const std::vector<std::string>& values, con
   cosim::RunOptions options{.record = loaded.input.run.record, .events = loaded.input.run.events, .goals = loaded.input.run.goals};
   options.stop_asked = interrupted;
   const cosim::RunLog log = simulate(loaded.world, *stepper, state, options);
-  const cosim::RunSummary summary = summarize(loaded.world, log, {});
-  result.seconds = log.wall;
-  result.step_ms = summary.step_ms;
-  result.newton = summary.newton_mean;
-  for (const cosim::Condition& condition : summary.conditions) result.unmet += !condition.met;
-  result.failure = summary.failure;
+  result.take(summarize(loaded.world, log, {}));
   if (log.interrupted) return result;
   if (result.measurable()) result.measured = measure(study.reference, loaded.world, log);
   store.keep(key, result);

@@ -18,24 +18,18 @@ std::vector<Vec3> points(const std::vector<Real>& numbers) {
 
 bool StudyStore::find(const std::string& key, StudyRun& run) const {
   return store_.find(key, [&](const Json& j) {
-    run.seconds = j.at("seconds"), run.newton = j.at("newton_per_step"), run.unmet = j.at("conditions_not_met");
-    run.failure = j.at("failure");
-    const std::vector<Real> ms = j.at("step_ms"), value = j.at("value");
-    run.step_ms = {ms.at(0), ms.at(1), ms.at(2), ms.at(3)};
+    RunStore::read(j, run);
+    const std::vector<Real> value = j.at("value");
     run.measured = {value.at(0), value.at(1), points(j.at("points")), points(j.at("turns"))};
   });
 }
 
 void StudyStore::keep(const std::string& key, const StudyRun& run) const {
-  const cosim::Distribution& ms = run.step_ms;
-  store_.keep(key, {{"values", run.values},
-                    {"seconds", run.seconds},
-                    {"newton_per_step", run.newton},
-                    {"conditions_not_met", run.unmet},
-                    {"failure", run.failure},
-                    {"step_ms", {ms.mean, ms.p50, ms.p95, ms.max}},
-                    {"value", {run.measured.error, run.measured.value}},
-                    {"points", flat(run.measured.points)},
-                    {"turns", flat(run.measured.turns)}});
+  Json j{{"values", run.values},
+         {"value", {run.measured.error, run.measured.value}},
+         {"points", flat(run.measured.points)},
+         {"turns", flat(run.measured.turns)}};
+  RunStore::write(run, j);
+  store_.keep(key, j);
 }
 }  // namespace tape::tapesim

@@ -6,19 +6,14 @@
 
 #include "apps/tapesim/run_store.hpp"
 #include "apps/tapesim/study_error.hpp"
-#include "cosim/run/summary.hpp"
 
 namespace tape::tapesim {
 /// One combination of a study's grid, and what came of it.
-struct StudyRun {
+struct StudyRun : RunCost {
   std::vector<std::string> values;
-  Real seconds = 0, error = std::numeric_limits<Real>::quiet_NaN();
+  Real error = std::numeric_limits<Real>::quiet_NaN();
   Real turn_error = 0;  ///< [deg] of the hub, where that is measured
-  cosim::Distribution step_ms{};
-  Real newton = 0;  ///< iterations per step
-  int unmet = 0;    ///< conditions
   bool pareto = false;
-  std::string failure{};
   Measured measured{};
 
   bool measurable() const { return failure.empty(); }

@@ -326,3 +326,9 @@ TEST_F(ReplayCommand, ARecordingNeedsARobotACameraAndAHub) {
   EXPECT_THAT(no_camera.err, HasSubstr("--record: the scene has no calibrated camera"));
   EXPECT_FALSE(std::filesystem::exists(at("none.h5")));
 }
+TEST_F(ReplayCommand, ARunThatFailsBecomesNoEpisode) {
+  const Outcome failed = tapesim({"run", at("tray.yaml"), "--out", at("failed"), "--record", at("failed.h5"), "--set",
+                                  "solver.max_newton=1", "--set", "solver.retries=0", "--set", "solver.velocity_tol=1e-12"});
+  EXPECT_EQ(failed.exit_code, 1);
+  for (const char* file : {"failed.h5", "failed.yaml"}) EXPECT_FALSE(std::filesystem::exists(at(file))) << file;
+}
