@@ -23,9 +23,8 @@ struct ExchangeParams {
   void fields(F&& f) {
     using tape::Range;
     f("schedule", schedule, "", Range::any(),
-      "inertial: tape and links are solved together; kinematic: links push and feel nothing; iterated: in turns; posed: kinematic, and "
-      "joints "
-      "are where they are told to be, without drives");
+      "inertial: tape and links are solved together; kinematic: links push and feel nothing; iterated: in turns; posed: kinematic, with "
+      "joints where they are told to be, without drives");
     f("iterations", iterations, "1", Range::closed(1, 1000), "most turns of the iterated schedule");
     f("tolerance", tolerance, "1", Range::above(0, 1), "change of the forces between two turns at which the iterated schedule ends");
   }
