@@ -4,8 +4,7 @@
 #include "tape/math/rotation.hpp"
 
 namespace tape {
-/// A vertex over a trial step: x(t) = centre + exp(t spin) arm + t velocity, t in [0, 1]. Free vertices have no arm, unless they ride a
-/// body.
+/// A vertex over a trial step: x(t) = centre + exp(t spin) arm + t velocity, t in [0, 1]. Free vertices have no arm.
 struct VertexPath {
   Vec3 centre;    ///< [m]
   Vec3 velocity;  ///< [m] per whole step
@@ -25,22 +24,10 @@ struct PathView {
   TAPE_HD VertexPath operator[](int v) const {
     const VertexOwner o = owner[v];
     if (o.block < 0) return {x[v], Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
-    if (o.body < 0) return o.ride < 0 ? straight(v) : riding(v);
+    if (o.body < 0) return {x[v], direction[o.block], Vec3::Zero(), Vec3::Zero()};
     return {body[o.body].position, direction[o.block], x[v] - body[o.body].position, direction[o.block + 1]};
   }
   /// Of the body that carries vertex v, else of a frame that does not turn, at the vertex itself.
   TAPE_HD Pose frame(int v) const { return owner[v].body < 0 ? Pose{Mat3::Identity(), x[v]} : body[owner[v].body]; }
-
- private:
-  TAPE_HD VertexPath straight(int v) const { return {x[v], direction[owner[v].block], Vec3::Zero(), Vec3::Zero()}; }
-  /// Turns with the body and ends where the straight path does. A layer that keeps its place on a body that turns by an angle a would come
-  /// nearer to its centre by r a^2/8 half way along the chord, which is more than a gap: CCD would stop it.
-  TAPE_HD VertexPath riding(int v) const {
-    const VertexOwner o = owner[v];
-    const Vec3 spin = direction[o.ride_block + 1], arm = x[v] - body[o.ride].position;
-    const VertexPath turning{body[o.ride].position, Vec3::Zero(), arm, spin};
-    if (turning.straight()) return straight(v);
-    return {turning.centre, direction[o.block] - (rotate(spin, arm) - arm), arm, spin};
-  }
 };
 }  // namespace tape

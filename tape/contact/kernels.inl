@@ -536,19 +536,6 @@ struct LimitStep {
     return step.capped ? 1 : 0;
   }
 };
-/// What is left of the direction of a vertex that rides a body where its path is cut short: scaled by the limit it leads to that place.
-struct CutRiders {
-  PathView paths;
-  Span<const int> block_object, component;
-  Span<const Real> limit;
-  Span<Vec3> direction;
-  TAPE_HD void operator()(int v) const {
-    const VertexOwner o = paths.owner[v];
-    if (o.ride < 0) return;
-    const Real taken = limit[component[block_object[o.block]]];
-    if (taken > 0 && taken < 1) direction[o.block] = (paths[v].at(taken) - paths.x[v]) / taken;
-  }
-};
 struct ScaleBlocks {
   Span<const int> block_object, component;
   Span<const Real> limit;

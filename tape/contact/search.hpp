@@ -51,9 +51,8 @@ class ContactSearch {
   /// Largest share of the step along `paths` for each object, in [0, 1]; equal for objects that candidates connect.
   /// Call after update() with the same paths. Fixed objects do not connect others; their value is 1.
   std::vector<Real> limit_steps(const PathView& paths, const CcdSettings& settings);
-  /// Multiplies each block of the direction of these paths by the limit last found for what it moves. What rides a body is of one object
-  /// with it, and ends where its arc is cut.
-  void scale(const PathView& paths, Span<Vec3> direction) const;
+  /// Multiplies each block of a direction by the limit last found for what it moves.
+  void scale(Span<Vec3> direction) const;
 
  private:
   /// What one viewpoint shows, in the memory of this side.

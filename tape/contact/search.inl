@@ -224,8 +224,7 @@ inline std::vector<Real> ContactSearch::limit_steps(const PathView& paths, const
   return of_object;
 }
 
-inline void ContactSearch::scale(const PathView& paths, Span<Vec3> direction) const {
-  parallel_for(paths.x.size, detail::CutRiders{paths, block_object_.span(), component_.span(), limit_.span(), direction});
+inline void ContactSearch::scale(Span<Vec3> direction) const {
   parallel_for(direction.size, detail::ScaleBlocks{block_object_.span(), component_.span(), limit_.span(), direction});
 }
 }  // namespace tape::TAPE_SIDE

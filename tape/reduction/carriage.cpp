@@ -22,9 +22,7 @@ Carriage carry(const Assembly& a, const std::vector<Cluster>& clusters, int coll
     for (int v = 0; v < strip.vertices; ++v) {
       const auto i = static_cast<std::size_t>(strip.first_vertex + v);
       if (!member[static_cast<std::size_t>(v)]) {
-        c.owner[i] = {.block = c.blocks++};
-        if (body >= 0 && (*clusters[known - 1].distance)[static_cast<std::size_t>(v)] > 0)
-          c.owner[i].ride = body, c.owner[i].ride_block = a.bodies[static_cast<std::size_t>(body)].block;
+        c.owner[i] = {c.blocks++, -1};
         continue;
       }
       const Cluster& cluster = clusters[known - 1];

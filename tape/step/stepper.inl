@@ -566,7 +566,7 @@ class SideStepper final : public Stepper {
         const std::vector<Real> limits =
             search_->limit_steps(coordinates_->paths(now_, direction_.span()), {.eta = world_.setup.scene.contact.ccd_gap});
         limit_ *= *std::ranges::min_element(limits);
-        search_->scale(coordinates_->paths(now_, direction_.span()), direction_.span());
+        search_->scale(direction_.span());
       }
     }
     const Stopwatch watch(line_search_ms_);

@@ -436,69 +436,9 @@ TEST(ContactSearch, OnlyWhatCandidatesConnectSharesAStepLimit) {
   EXPECT_NEAR(limit[4], (1 - eta) * gap / 1e-3, 0.02 * limit[4]);
   EXPECT_EQ(search.report().capped, 0);
   Buffer<Vec3> scaled(scene.direction);
-  search.scale(scene.paths(), scaled.span());
+  search.scale(scaled.span());
   for (int b = 0; b < 16; ++b)
     EXPECT_EQ(scaled.span()[b], Vec3(limit[static_cast<std::size_t>(1 + b / 4)] * scene.direction[static_cast<std::size_t>(b)]));
-}
-
-/// A tile on a body 20 mm from its centre, which turns about z by 0.3 rad, and a second one of the same object that lies on it, whose own
-/// unknowns let it keep its place. It rides the body, or does not.
-Scene layers_on_a_turning_body(bool rides, bool obstacle) {
-  const Real r = 0.02, gap = 3e-5;
-  test::Surface s;
-  if (obstacle) {
-    const auto at = [&](Real rho, Real z) { return Vec3(rho * std::cos(0.2), rho * std::sin(0.2), z); };
-    const VertexOwner fixed{};
-    test::add_object(s, {at(0.018, -2e-3), at(0.022, -2e-3), at(0.022, 2e-3), at(0.018, 2e-3)}, {{0, 1, 2}, {0, 2, 3}}, kXi, &fixed);
-  }
-  std::vector<Vec3> x;
-  std::vector<VertexOwner> owners;
-  for (const Real rho : {r, r + 2 * kXi + gap})
-    for (const auto& [y, z] : {std::pair(-2e-3, -2e-3), {2e-3, -2e-3}, {2e-3, 2e-3}, {-2e-3, 2e-3}}) {
-      x.emplace_back(rho, y, z);
-      owners.push_back(rho == r ? VertexOwner{0, 0}
-                                : VertexOwner{2 + static_cast<int>(owners.size()) - 4, -1, rides ? 0 : -1, rides ? 0 : -1});
-    }
-  s.mesh.add_object("layers", x, owners, {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}, kXi, 0);
-  s.x.insert(s.x.end(), x.begin(), x.end());
-  s.blocks = 6;
-  Scene scene(s);
-  scene.bodies = {{Mat3::Identity(), Vec3::Zero()}};
-  const Vec3 spin(0, 0, 0.3);
-  scene.direction = {Vec3::Zero(), spin};
-  for (int i = 4; i < 8; ++i) scene.direction.push_back(rotate(spin, x[static_cast<std::size_t>(i)]) - x[static_cast<std::size_t>(i)]);
-  return scene;
-}
-
-TEST(ContactSearch, WhatRidesABodyTurnsWithItInsteadOfThroughIt) {
-  for (const bool rides : {true, false}) {
-    Scene scene = layers_on_a_turning_body(rides, false);
-    ContactSearch search(scene.mesh(), kDhat, kDhat);
-    search.update(scene.paths(), 0);
-    const Real limit = search.limit_steps(scene.paths(), {})[0];
-    if (rides)
-      EXPECT_EQ(limit, 1);
-    else
-      EXPECT_LT(limit, 0.2) << "half way along its chord it would be r a^2/8 = 0.23 mm nearer to the centre";
-  }
-}
-
-TEST(ContactSearch, WhatRidesABodyIsCutShortOnItsArc) {
-  Scene scene = layers_on_a_turning_body(true, true);
-  ContactSearch search(scene.mesh(), kDhat, kDhat);
-  search.update(scene.paths(), 0);
-  const Real limit = search.limit_steps(scene.paths(), {})[1];
-  EXPECT_GT(limit, 0.1);
-  EXPECT_LT(limit, 0.4);  // the tile's edge is 0.1 rad from the obstacle
-  std::vector<Vec3> cut;
-  for (int v = 4; v < 12; ++v) cut.push_back(scene.paths()[v].at(limit));
-  Buffer<Vec3> scaled(scene.direction);
-  search.scale(scene.paths(), scaled.span());
-  scene.direction = scaled.download();
-  for (int v = 4; v < 12; ++v) {
-    EXPECT_LT((scene.paths()[v].at(1) - cut[static_cast<std::size_t>(v - 4)]).norm(), 1e-16) << v;
-    EXPECT_NEAR(scene.paths()[v].at(0.5).norm(), scene.surface.x[static_cast<std::size_t>(v)].norm(), 1e-16) << v;
-  }
 }
 
 TEST(ContactSearch, TwoObjectsOnOneBodyShareAStepLimit) {
