@@ -32,6 +32,7 @@ ObjectGroups::ObjectGroups(const SurfaceMesh& mesh)
     if (object_of_block.size() < end) object_of_block.resize(end, -1);
     std::fill_n(object_of_block.begin() + joint.first_block, joint.blocks, joint.objects[0]);
   }
+  for (const auto& [a, b] : mesh.tied) join(a, b);
   constant_parent_ = parent_;
   number_components();
 }
@@ -41,12 +42,16 @@ int ObjectGroups::root(int object) {
   return object;
 }
 
+void ObjectGroups::join(int a, int b) {
+  if (!fixed_[at(a)] && !fixed_[at(b)]) parent_[at(root(a))] = root(b);
+}
+
 void ObjectGroups::join(const std::vector<Real>& touching) {
   parent_ = constant_parent_;
   const int n = objects();
   for (int a = 0; a < n; ++a)
     for (int b = 0; b < n; ++b)
-      if (touching[at(a) * at(n) + at(b)] == 0 && !fixed_[at(a)] && !fixed_[at(b)]) parent_[at(root(a))] = root(b);
+      if (touching[at(a) * at(n) + at(b)] == 0) join(a, b);
   number_components();
 }
 

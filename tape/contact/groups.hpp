@@ -4,8 +4,8 @@
 #include "tape/contact/surface.hpp"
 
 namespace tape {
-/// Objects that must take steps of one length: those that candidates connect, directly or through others, and those that one
-/// rigid body or articulation moves. Objects that cannot move connect nothing. Host only.
+/// Objects that must take steps of one length: those that candidates connect, directly or through others, those that one rigid body or
+/// articulation moves, and those that springs tie. Objects that cannot move connect nothing. Host only.
 class ObjectGroups {
  public:
   explicit ObjectGroups(const SurfaceMesh& mesh);
@@ -19,6 +19,7 @@ class ObjectGroups {
 
  private:
   int root(int object);
+  void join(int a, int b);
   void number_components();
   std::vector<int> parent_, constant_parent_;  ///< [objects]
   std::vector<bool> fixed_;                    ///< [objects]

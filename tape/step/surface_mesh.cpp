@@ -48,6 +48,14 @@ void keep_apart(const Scene& scene, const Assembly& a, SurfaceMesh& mesh) {
     joint.first_block = part.first_block, joint.blocks = part.blocks;
   }
 }
+/// Axles and grips hold firmly: were one end to take less of a step than the other, the step would no longer lead downhill.
+void tie(const Scene& scene, SurfaceMesh& mesh) {
+  const auto object = [&](const std::string& name) { return static_cast<int>(std::ranges::find(mesh.objects, name) - mesh.objects.begin()); };
+  for (const AxleJoint& axle : scene.axles)
+    if (!axle.to.empty()) mesh.tied.emplace_back(object(axle.body), object(axle.to));
+  for (const Grip& grip : scene.grips)
+    if (!grip.to.empty()) mesh.tied.emplace_back(object(grip.what.object), object(grip.to));
+}
 }  // namespace
 
 SurfaceMesh make_surface(const Scene& scene, const Assembly& a) {
@@ -80,6 +88,7 @@ SurfaceMesh make_surface(const Scene& scene, const Assembly& a) {
                     hub ? static_cast<int>(b) : -1);
   }
   keep_apart(scene, a, mesh);
+  tie(scene, mesh);
   return mesh;
 }
 }  // namespace tape

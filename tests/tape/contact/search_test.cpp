@@ -441,6 +441,23 @@ TEST(ContactSearch, OnlyWhatCandidatesConnectSharesAStepLimit) {
     EXPECT_EQ(scaled.span()[b], Vec3(limit[static_cast<std::size_t>(1 + b / 4)] * scene.direction[static_cast<std::size_t>(b)]));
 }
 
+TEST(ContactSearch, WhatIsTiedSharesAStepLimitAndNothingElseDoes) {
+  for (const bool tied : {true, false}) {
+    test::Surface s;
+    add_table(s, 1e-3);
+    add_tile(s, 0, 0);
+    add_tile(s, 0.5, 0.5);
+    if (tied) s.mesh.tied = {{0, 2}, {1, 2}};  // the table is fixed: it ties nothing
+    Scene scene(s);
+    std::fill_n(scene.direction.begin(), 4, Vec3(0, -2e-3, 0));
+    ContactSearch search(scene.mesh(), kDhat, kDhat);
+    search.update(scene.paths(), 0);
+    const std::vector<Real> limit = search.limit_steps(scene.paths(), {});
+    EXPECT_LT(limit[1], 0.5);
+    EXPECT_EQ(limit[2], tied ? limit[1] : 1);
+  }
+}
+
 TEST(ContactSearch, TwoObjectsOnOneBodyShareAStepLimit) {
   test::Surface s;
   add_table(s, 1e-3);
