@@ -109,28 +109,37 @@ Envelope envelope(const Graph& g, int unknowns) {
 
 struct Sizes {
   Real unknowns = 0, border = 0;  // of the strips, of the rest
+  Real touched = 0;               // of the rest, those that couple to strips
   Real band_flops = 0, band_entries = 0;
   Real dropped = 0;  // blocks of the upper triangle outside the bands
 };
 Sizes strip_sizes(const HostBlocks& a, const SystemLayout& layout, const std::vector<int>& strip_of) {
-  std::vector<int> width(layout.strips.size(), 0);
-  const auto for_strip_blocks = [&](auto&& f) {
-    for (int i = 0; i < a.n; ++i)
-      for (int k = a.row_begin[at(i)]; k < a.row_begin[at(i) + 1]; ++k)
-        if (strip_of[at(i)] >= 0 && strip_of[at(a.col[at(k)])] >= 0) f(k, strip_of[at(i)], strip_of[at(a.col[at(k)])], a.col[at(k)] - i);
-  };
-  for_strip_blocks([&](int k, int strip, int other, int reach) {
-    if (strip == other && a.fixed[at(k)] >= 0) width[at(strip)] = std::max(width[at(strip)], reach);
-  });
+  std::vector<int> end(at(a.n));  // of the profile of each row of a strip
+  std::vector<bool> touched(at(a.n));
   Sizes s;
-  for_strip_blocks([&](int, int strip, int other, int reach) { s.dropped += strip != other || reach > width[at(strip)]; });
-  for (std::size_t b = 0; b < width.size(); ++b) {
-    const Real n = 3.0 * layout.strips[b].blocks, kd = 3.0 * width[b] + 2;
-    s.unknowns += n;
-    s.band_flops += n * kd * kd;
-    s.band_entries += n * kd;
+  for (const StripLayout& strip : layout.strips) {
+    int far = 0;
+    for (int i = strip.first_block; i < strip.first_block + strip.blocks; ++i) {
+      far = std::max(far, i + 1);
+      for (int k = a.row_begin[at(i)]; k < a.row_begin[at(i) + 1]; ++k)
+        if (a.fixed[at(k)] >= 0 && strip_of[at(a.col[at(k)])] == strip_of[at(i)]) far = std::max(far, a.col[at(k)] + 1);
+      end[at(i)] = far;
+      const Real kd = 3.0 * (far - 1 - i) + 2;
+      s.band_flops += 3 * kd * kd;
+      s.band_entries += 3 * kd;
+    }
+    s.unknowns += 3.0 * strip.blocks;
   }
+  for (int i = 0; i < a.n; ++i)
+    for (int k = a.row_begin[at(i)]; k < a.row_begin[at(i) + 1]; ++k) {
+      const int j = a.col[at(k)], strip = strip_of[at(i)], other = strip_of[at(j)];
+      if (strip >= 0 && other >= 0)
+        s.dropped += strip != other || j >= end[at(i)];
+      else if (strip >= 0 || other >= 0)
+        touched[at(strip >= 0 ? j : i)] = true;
+    }
   s.border = 3.0 * a.n - s.unknowns;
+  s.touched = 3.0 * static_cast<Real>(std::ranges::count(touched, true));
   return s;
 }
 }  // namespace
@@ -141,17 +150,20 @@ LinearCosts linear_costs(const HostBlocks& a, const SystemLayout& layout) {
     for (int i = 0; i < layout.strips[s].blocks; ++i) strip_of[at(layout.strips[s].first_block + i)] = static_cast<int>(s);
   const Sizes s = strip_sizes(a, layout, strip_of);
   const Real blocks = static_cast<Real>(a.col.size()), multiply = 36 * blocks;
-  const auto dense_border = [&](Real m) { return s.unknowns * m * m + m * m * m / 3; };  // [flop] Schur complement and its factor
-  const Real sweep = 4 * (s.band_entries + s.unknowns * s.border + s.border * s.border);
+  const auto dense_border = [&](Real m, Real all) {
+    return s.unknowns * m * m + all * all * all / 3;
+  };  // [flop] Schur complement, its factor
+  const Real sweep = 4 * (s.band_entries + s.unknowns * s.touched + s.border * s.border);
+  const Real coarse_border = 6.0 * static_cast<Real>(layout.body_blocks.size());
   LinearCosts costs;
   costs.cholesky = kAnalysisPerBlock * blocks + envelope(graph_without_bodies(a, layout), 3).seconds +
-                   dense_border(6.0 * static_cast<Real>(layout.body_blocks.size())) / kBorderRate;
+                   dense_border(coarse_border, coarse_border) / kBorderRate;
   costs.pcg_jacobi = kJacobiIterations * (multiply + 18.0 * a.n) / kStreamRate;
   const Real iterations = s.dropped > 0 ? kDropIterations + kDropShareIterations * s.dropped / blocks : kExactIterations;
-  costs.pcg_strip = s.band_flops / kBandRate + (2 * s.band_entries * s.border + dense_border(s.border)) / kBorderRate +
+  costs.pcg_strip = s.band_flops / kBandRate + (2 * s.band_entries * s.touched + dense_border(s.touched, s.border)) / kBorderRate +
                     iterations * (multiply + sweep) / kStreamRate;
   const std::vector<RigidGroup> groups = rigid_groups(layout);
-  const Real coarse_border = 6.0 * static_cast<Real>(layout.body_blocks.size()), coarse_unknowns = 6.0 * static_cast<Real>(groups.size());
+  const Real coarse_unknowns = 6.0 * static_cast<Real>(groups.size());
   const Envelope coarse = envelope(graph_of_groups(a, groups), 6);
   const Real coarse_solve = 4 * (coarse.entries + coarse_unknowns * coarse_border);
   costs.pcg_two_level = kCoarsePerBlock * blocks + coarse.seconds + coarse_unknowns * coarse_border * coarse_border / kBorderRate +

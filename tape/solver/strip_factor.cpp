@@ -14,50 +14,27 @@ namespace tape {
 namespace {
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// Widest reach of the fixed group inside blocks [first, end).
-int fixed_width(const HostBlocks& a, int first, int end) {
-  int width = 0;
-  for (int i = first; i < end; ++i)
+/// Where each row of blocks [first, end) ends in the fixed group, counted from `first`; nowhere less than the row before.
+std::vector<int> fixed_profile(const HostBlocks& a, int first, int end) {
+  std::vector<int> profile;
+  int far = 0;
+  for (int i = first; i < end; ++i) {
+    far = std::max(far, i + 1);
     for (int k = a.row_begin[at(i)]; k < a.row_begin[at(i) + 1]; ++k)
-      if (a.fixed[at(k)] >= 0 && a.col[at(k)] < end) width = std::max(width, a.col[at(k)] - i);
-  return width;
-}
-
-constexpr int kPanel = 4;  // columns that are eliminated together
-
-/// L of a band matrix of n columns, in place of its lower triangle: column c begins with its diagonal entry at lower + c ld, where
-/// ld = kd + kPanel, and ends with kPanel - 1 zeros, so that the columns of a panel reach equally far. LAPACK goes column by column
-/// where kd <= 64 (dpbtrf) and takes three times as long.
-/// @return false when the matrix is not positive definite
-bool factor_band(Real* lower, int n, int kd) {
-  using Column = Eigen::Map<Eigen::VectorXd>;
-  using Four = Eigen::Map<Eigen::Vector4d>;
-  const int ld = kd + kPanel;
-  for (int j = 0; j < n; j += kPanel) {
-    Real* const panel = lower + at(j) * at(ld);
-    const auto entry = [&](int row, int column) { return panel + column * ld + row - column; };  // counted from j
-    const int columns = std::min(kPanel, n - j);
-    for (int q = 0; q < columns; ++q) {
-      Column column(entry(q, q), ld - q);
-      for (int p = 0; p < q; ++p) column -= *entry(q, p) * Column(entry(q, p), ld - q);
-      if (!(column[0] > 0)) return false;
-      column /= std::sqrt(column[0]);
-    }
-    for (int c = columns; c < std::min(ld, n - j); ++c) {
-      Real *const l0 = entry(c, 0), *const l1 = entry(c, 1), *const l2 = entry(c, 2), *const l3 = entry(c, 3);
-      const Real f0 = *l0, f1 = *l1, f2 = *l2, f3 = *l3;
-      Real* const out = entry(c, c);
-      int i = 0;
-      for (; i + 4 <= ld - c; i += 4) Four(out + i) -= f0 * Four(l0 + i) + f1 * Four(l1 + i) + f2 * Four(l2 + i) + f3 * Four(l3 + i);
-      for (; i < ld - c; ++i) out[i] -= f0 * l0[i] + f1 * l1[i] + f2 * l2[i] + f3 * l3[i];
-    }
+      if (a.fixed[at(k)] >= 0 && a.col[at(k)] < end) far = std::max(far, a.col[at(k)] + 1);
+    profile.push_back(far - first);
   }
-  return true;
+  return profile;
 }
 }  // namespace
 
+bool StripFactor::in_band(int i, int j) const {
+  const int band = band_of_[at(i)];
+  return band == band_of_[at(j)] && bands_[at(band)].matrix.holds(i - bands_[at(band)].first_block, j - bands_[at(band)].first_block);
+}
+
 void StripFactor::set_pattern(const HostBlocks& a) {
-  bands_.resize(layout_.strips.size());
+  bands_.resize(layout_.strips.size());  // their memory is used again
   band_of_.assign(at(a.n), -1);
   place_.assign(at(a.n), 0);
   strip_unknowns_ = border_unknowns_ = 0;
@@ -68,54 +45,61 @@ void StripFactor::set_pattern(const HostBlocks& a) {
       band_of_[at(strip.first_block + i)] = static_cast<int>(s);
       place_[at(strip.first_block + i)] = strip_unknowns_ / 3 + i;
     }
-    Band& band = bands_[s];  // its memory is used again
-    band.first_block = strip.first_block;
-    band.blocks = strip.blocks;
-    band.width = fixed_width(a, strip.first_block, strip.first_block + strip.blocks);
+    bands_[s].first_block = strip.first_block;
+    bands_[s].matrix.set_profile(fixed_profile(a, strip.first_block, strip.first_block + strip.blocks));
     strip_unknowns_ += 3 * strip.blocks;
   }
   for (int i = 0; i < a.n; ++i)
     if (band_of_[at(i)] < 0) place_[at(i)] = border_unknowns_ / 3, border_unknowns_ += 3;
   row_.resize(a.col.size());
   dropped_.clear();
+  const int none = strip_unknowns_;
+  std::vector<int> begin(at(border_unknowns_ / 3), none);  // of the couplings of each border block
   for (int i = 0; i < a.n; ++i)
     for (int k = a.row_begin[at(i)]; k < a.row_begin[at(i) + 1]; ++k) {
       row_[at(k)] = i;
-      const int band_i = band_of_[at(i)], band_j = band_of_[at(a.col[at(k)])];
-      if (band_i < 0 || band_j < 0) continue;
-      if (band_i != band_j || a.col[at(k)] - i > bands_[at(band_i)].width) dropped_.push_back(k);
+      const int j = a.col[at(k)], band_i = band_of_[at(i)], band_j = band_of_[at(j)];
+      if (band_i >= 0 && band_j >= 0) {
+        if (!in_band(i, j)) dropped_.push_back(k);
+      } else if (band_i >= 0 || band_j >= 0) {
+        int& first = begin[at(place_[at(band_i >= 0 ? j : i)])];
+        first = std::min(first, place_[at(band_i >= 0 ? i : j)]);
+      }
     }
+  touch_.assign(begin.size(), -1);
+  touched_.clear(), first_row_.clear();
+  for (int b = 0; b < static_cast<int>(begin.size()); ++b) {
+    if (begin[at(b)] == none) continue;
+    touch_[at(b)] = static_cast<int>(touched_.size());
+    for (int c = 0; c < 3; ++c) touched_.push_back(3 * b + c), first_row_.push_back(begin[at(b)]);
+  }
   strip_part_.resize(at(strip_unknowns_));
   border_part_.resize(at(border_unknowns_));
+  touched_part_.resize(touched_.size());
   pattern_ = a.pattern;
 }
 
 void StripFactor::add_diagonal(int block, const Mat3& m) {
   Band& band = bands_[at(band_of_[at(block)])];
-  const int ld = band.kd() + kPanel, first = 3 * (block - band.first_block);
-  for (int c = 0; c < 3; ++c)
-    for (int r = c; r < 3; ++r) band.lower[at(first + c) * at(ld) + at(r - c)] += m(r, c);
+  band.matrix.add(block - band.first_block, block - band.first_block, m);
 }
 
 void StripFactor::fill(const HostBlocks& a, Drop drop) {
-  for (Band& band : bands_) band.lower.assign(at(band.unknowns()) * at(band.kd() + kPanel), 0);
-  coupling_.assign(at(strip_unknowns_) * at(border_unknowns_), 0);
+  for (Band& band : bands_) band.matrix.set_zero();
+  coupling_.assign(at(strip_unknowns_) * touched_.size(), 0);
   border_.assign(at(border_unknowns_) * at(border_unknowns_), 0);
   for (int k = 0; k < static_cast<int>(row_.size()); ++k) {
     const int i = row_[at(k)], j = a.col[at(k)], band_i = band_of_[at(i)], band_j = band_of_[at(j)];
     const Mat3& m = a.values[at(k)];
     if (band_i >= 0 && band_j >= 0) {
       Band& band = bands_[at(band_i)];
-      if (band_i != band_j || j - i > band.width) continue;
-      for (int c = 0; c < 3; ++c)
-        for (int r = i == j ? c : 0; r < 3; ++r)
-          band.lower[at(3 * (i - band.first_block) + c) * at(band.kd() + kPanel) + at(3 * (j - i) + r - c)] = m(c, r);
+      if (in_band(i, j)) band.matrix.add(i - band.first_block, j - band.first_block, m);
     } else if (band_i < 0 && band_j < 0) {
       for (int c = 0; c < 3; ++c)
         for (int r = 0; r < 3; ++r) border_[at(3 * place_[at(i)] + c) * at(border_unknowns_) + at(3 * place_[at(j)] + r)] = m(c, r);
     } else {
       const bool row_in_strip = band_i >= 0;
-      const int s = 3 * place_[at(row_in_strip ? i : j)], b = 3 * place_[at(row_in_strip ? j : i)];
+      const int s = 3 * place_[at(row_in_strip ? i : j)], b = touch_[at(place_[at(row_in_strip ? j : i)])];
       for (int c = 0; c < 3; ++c)
         for (int r = 0; r < 3; ++r) coupling_[at(b + c) * at(strip_unknowns_) + at(s + r)] = row_in_strip ? m(r, c) : m(c, r);
     }
@@ -130,18 +114,22 @@ void StripFactor::fill(const HostBlocks& a, Drop drop) {
 }
 
 bool StripFactor::factor_filled() {
-  const int ns = strip_unknowns_, nb = border_unknowns_;
-  int first = 0;
+  const int ns = strip_unknowns_, nb = border_unknowns_, nt = static_cast<int>(touched_.size());
+  int first = 0;  // of the band, among the unknowns of the strips
   for (Band& band : bands_) {
-    const int n = band.unknowns(), kd = band.kd();
-    if (n == 0) continue;
-    if (!factor_band(band.lower.data(), n, kd)) return false;
-    if (nb > 0)
-      LAPACKE_dtbtrs_work(LAPACK_COL_MAJOR, 'L', 'N', 'N', n, kd, nb, band.lower.data(), kd + kPanel, coupling_.data() + first, ns);
-    first += n;
+    if (!band.matrix.factor()) return false;
+    for (int t = 0; t < nt; ++t)
+      if (first_row_[at(t)] * 3 < first + band.matrix.unknowns())
+        band.matrix.solve_lower(coupling_.data() + at(t) * at(ns) + first, std::max(0, first_row_[at(t)] - first / 3));
+    first += band.matrix.unknowns();
   }
   if (nb == 0) return true;
-  if (ns > 0) cblas_dsyrk(CblasColMajor, CblasLower, CblasTrans, nb, ns, -1, coupling_.data(), ns, 1, border_.data(), nb);
+  if (ns > 0 && nt > 0) {
+    schur_.resize(at(nt) * at(nt));
+    cblas_dsyrk(CblasColMajor, CblasLower, CblasTrans, nt, ns, 1, coupling_.data(), ns, 0, schur_.data(), nt);
+    for (int c = 0; c < nt; ++c)
+      for (int r = c; r < nt; ++r) border_[at(touched_[at(c)]) * at(nb) + at(touched_[at(r)])] -= schur_[at(c) * at(nt) + at(r)];
+  }
   return LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', nb, border_.data(), nb) == 0;
 }
 
@@ -157,26 +145,27 @@ bool StripFactor::factor(const HostBlocks& a) {
 }
 
 void StripFactor::solve(Span<const Vec3> r, Span<Vec3> z) {
-  const int ns = strip_unknowns_, nb = border_unknowns_;
+  const int ns = strip_unknowns_, nb = border_unknowns_, nt = static_cast<int>(touched_.size());
   const auto part = [&](int i) { return (band_of_[at(i)] >= 0 ? strip_part_ : border_part_).data() + 3 * place_[at(i)]; };
   for (int i = 0; i < r.size; ++i) std::copy_n(r[i].data(), 3, part(i));
-  const auto solve_bands = [&](CBLAS_TRANSPOSE transpose) {
+  const auto for_bands = [&](auto&& f) {
     Real* x = strip_part_.data();
-    for (const Band& band : bands_) {
-      cblas_dtbsv(CblasColMajor, CblasLower, transpose, CblasNonUnit, band.unknowns(), band.kd(), band.lower.data(), band.kd() + kPanel, x,
-                  1);
-      x += band.unknowns();
-    }
+    for (const Band& band : bands_) f(band.matrix, x), x += band.matrix.unknowns();
   };
-  solve_bands(CblasNoTrans);
+  for_bands([](const ProfileMatrix& m, Real* x) { m.solve_lower(x); });
   if (nb > 0) {
-    if (ns > 0) cblas_dgemv(CblasColMajor, CblasTrans, ns, nb, -1, coupling_.data(), ns, strip_part_.data(), 1, 1, border_part_.data(), 1);
+    if (nt > 0) {
+      cblas_dgemv(CblasColMajor, CblasTrans, ns, nt, 1, coupling_.data(), ns, strip_part_.data(), 1, 0, touched_part_.data(), 1);
+      for (int t = 0; t < nt; ++t) border_part_[at(touched_[at(t)])] -= touched_part_[at(t)];
+    }
     cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, nb, border_.data(), nb, border_part_.data(), 1);
     cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, nb, border_.data(), nb, border_part_.data(), 1);
-    if (ns > 0)
-      cblas_dgemv(CblasColMajor, CblasNoTrans, ns, nb, -1, coupling_.data(), ns, border_part_.data(), 1, 1, strip_part_.data(), 1);
+    if (nt > 0) {
+      for (int t = 0; t < nt; ++t) touched_part_[at(t)] = border_part_[at(touched_[at(t)])];
+      cblas_dgemv(CblasColMajor, CblasNoTrans, ns, nt, -1, coupling_.data(), ns, touched_part_.data(), 1, 1, strip_part_.data(), 1);
+    }
   }
-  solve_bands(CblasTrans);
+  for_bands([](const ProfileMatrix& m, Real* x) { m.solve_lower_transposed(x); });
   for (int i = 0; i < r.size; ++i) std::copy_n(part(i), 3, z[i].data());
 }
 }  // namespace tape
