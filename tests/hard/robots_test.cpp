@@ -87,11 +87,31 @@ interfaces: [{between: [tape.sticky, board], law: per_pair, cn: 0.25, ct: 0.25, 
 script: [{robot: presser, joints: {press: 0.13}, duration: 0.5}]
 )";
 
+/// A dispenser with a roll on its axle falls on a floor that is not level; the film has not been threaded and lies free.
+const std::string kDispenserDropped = std::string(R"(strip: {film: packaging_48mm, cells_across: 4, cell_length: 0.0027}
+model: coh-r
+time: {dt: 0.005}
+roll:
+  turns: 1.5
+  free_length: 0.05
+  sense: right
+  position: [0, 0, 0.125]
+  core: {inner_diameter: 0.0762, outer_diameter: 0.0822, height: 0.048}
+robots: {dispenser: {urdf: dispenser.urdf, base: free, position: [0, 0, 0.05], velocity: [0, 0, -1], material: steel}}
+axles: [{body: hub, to: "dispenser:cutter", torque: 0.02}]
+cluster: {gate: radial}
+interfaces:
+  - {between: [tape.sticky, tape], law: per_pair, cn: 0.25, ct: 0.25, beta0: 1, slip: bonding}
+  - {between: [tape.sticky, hub], law: per_pair, cn: 1, ct: 1, beta0: 1, slip: bonding}
+bodies: {floor: {shape: box, size: [0.6, 0.4, 0.02], position: [0, 0, -0.02], rotation_deg: [5, 8, 0], material: floor}}
+)");
+
 INSTANTIATE_TEST_SUITE_P(Cases, RobotsHard,
                          testing::Values(RobotCase{"target_inside_the_table", kTargetInside.c_str(), 30, 0.002},
                                          RobotCase{"dead_stop", kDeadStop.c_str(), 40, 0.002},
                                          RobotCase{"falls_on_a_roll", kFallsOnRoll.c_str(), 30, 0.005},
-                                         RobotCase{"press_on_the_carton", kPressOnTheCarton, 60, 0.002}),
+                                         RobotCase{"press_on_the_carton", kPressOnTheCarton, 60, 0.002},
+                                         RobotCase{"dispenser_dropped", kDispenserDropped.c_str(), 40, 0.005}),
                          [](const auto& hard) { return std::string(hard.param.name); });
 
 TEST(RobotsHardStart, ALinkThatTouchesTheTapeIsRefusedByName) {
