@@ -50,7 +50,9 @@ void keep_apart(const Scene& scene, const Assembly& a, SurfaceMesh& mesh) {
 }
 /// Axles and grips hold firmly: were one end to take less of a step than the other, the step would no longer lead downhill.
 void tie(const Scene& scene, SurfaceMesh& mesh) {
-  const auto object = [&](const std::string& name) { return static_cast<int>(std::ranges::find(mesh.objects, name) - mesh.objects.begin()); };
+  const auto object = [&](const std::string& name) {
+    return static_cast<int>(std::ranges::find(mesh.objects, name) - mesh.objects.begin());
+  };
   for (const AxleJoint& axle : scene.axles)
     if (!axle.to.empty()) mesh.tied.emplace_back(object(axle.body), object(axle.to));
   for (const Grip& grip : scene.grips)
