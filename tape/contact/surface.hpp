@@ -54,7 +54,7 @@ struct SurfaceMesh {
   std::vector<int> follows;          ///< [objects] body that most of it moves and turns with, its own included; -1: none
   std::vector<JointlyMoved> together;
   std::vector<std::pair<int, int>> tied;  ///< objects that springs hold to each other
-  std::vector<char> apart;  ///< [objects objects] 1: never a pair, symmetric; empty: all may be
+  std::vector<char> apart;                ///< [objects objects] 1: never a pair, symmetric; empty: all may be
   int materials = 1;
   std::vector<Real> kappa = {1e4};  ///< [materials materials] Pa, stiffness of the barrier, symmetric
 
