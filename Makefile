@@ -23,7 +23,7 @@ build: deps
 	cmake --build $(BUILD) --parallel $(JOBS)
 
 demo: build
-	$(BUILD)/tapesim run data/scenes/demo.yaml --out out/demo --video $(if $(DEMO_STEPS),--steps $(DEMO_STEPS))
+	$(BUILD)/tapesim run data/scenes/box_sealing.yaml --out out/demo --video $(if $(DEMO_STEPS),--steps $(DEMO_STEPS))
 
 # Suites named Long... are left to check-all.
 CTEST := ctest --output-on-failure --no-tests=error --parallel $(JOBS)
