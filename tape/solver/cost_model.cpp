@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "tape/solver/host_blocks.hpp"
 #include "tape/solver/rigid_groups.hpp"
 
 namespace tape {
@@ -118,13 +119,10 @@ Sizes strip_sizes(const HostBlocks& a, const SystemLayout& layout, const std::ve
   std::vector<bool> touched(at(a.n));
   Sizes s;
   for (const StripLayout& strip : layout.strips) {
-    int far = 0;
-    for (int i = strip.first_block; i < strip.first_block + strip.blocks; ++i) {
-      far = std::max(far, i + 1);
-      for (int k = a.row_begin[at(i)]; k < a.row_begin[at(i) + 1]; ++k)
-        if (a.fixed[at(k)] >= 0 && strip_of[at(a.col[at(k)])] == strip_of[at(i)]) far = std::max(far, a.col[at(k)] + 1);
-      end[at(i)] = far;
-      const Real kd = 3.0 * (far - 1 - i) + 2;
+    const std::vector<int> profile = fixed_profile(a, strip.first_block, strip.first_block + strip.blocks);
+    for (int k = 0; k < strip.blocks; ++k) {
+      end[at(strip.first_block + k)] = strip.first_block + profile[at(k)];
+      const Real kd = 3.0 * (profile[at(k)] - 1 - k) + 2;
       s.band_flops += 3 * kd * kd;
       s.band_entries += 3 * kd;
     }

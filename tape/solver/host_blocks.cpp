@@ -1,5 +1,6 @@
 #include "tape/solver/host_blocks.hpp"
 
+#include <algorithm>
 #include <atomic>
 
 namespace tape {
@@ -29,5 +30,18 @@ void sum_groups(Span<const Mat3> fixed, Span<const Mat3> contact, HostBlocks& ho
     host.values[k] = host.fixed[k] >= 0 ? fixed[host.fixed[k]] : Mat3(Mat3::Zero());
     if (host.contact[k] >= 0) host.values[k] += contact[host.contact[k]];
   }
+}
+
+std::vector<int> fixed_profile(const HostBlocks& a, int first, int end) {
+  const auto at = [](int k) { return static_cast<std::size_t>(k); };
+  std::vector<int> profile;
+  int far = 0;
+  for (int i = first; i < end; ++i) {
+    far = std::max(far, i + 1);
+    for (int k = a.row_begin[at(i)]; k < a.row_begin[at(i) + 1]; ++k)
+      if (a.fixed[at(k)] >= 0 && a.col[at(k)] < end) far = std::max(far, a.col[at(k)] + 1);
+    profile.push_back(far - first);
+  }
+  return profile;
 }
 }  // namespace tape

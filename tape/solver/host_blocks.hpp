@@ -12,4 +12,6 @@ std::uint64_t next_pattern_id();  ///< 1, 2, ...: a new one each time
 void merge_patterns(int n, const std::vector<std::uint64_t>& fixed, const std::vector<std::uint64_t>& contact, HostBlocks& host);
 /// host.values = the sum of the two groups' blocks
 void sum_groups(Span<const Mat3> fixed, Span<const Mat3> contact, HostBlocks& host);
+/// Where each row of blocks [first, end) ends in the fixed group, counted from `first`; nowhere less than the row before.
+std::vector<int> fixed_profile(const HostBlocks& a, int first, int end);
 }  // namespace tape

@@ -28,8 +28,10 @@ void ProfileMatrix::set_profile(std::vector<int> end) {
 void ProfileMatrix::set_zero() { std::ranges::fill(entries_, 0); }
 
 void ProfileMatrix::add(int i, int j, const Mat3& m) {
-  for (int c = 0; c < 3; ++c)
-    for (int r = i == j ? c : 0; r < 3; ++r) entries_[place(3 * j + r, 3 * i + c)] += m(c, r);
+  for (int c = 0; c < 3; ++c) {
+    Real* const column = entries_.data() + place(3 * j, 3 * i + c);
+    for (int r = i == j ? c : 0; r < 3; ++r) column[r] += m(c, r);
+  }
 }
 
 // LAPACK goes column by column where a band is narrower than 64 (dpbtrf) and takes three times as long.

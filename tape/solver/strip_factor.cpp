@@ -9,23 +9,12 @@
 
 #include "tape/core/error.hpp"
 #include "tape/solver/blas.hpp"
+#include "tape/solver/host_blocks.hpp"
 
 namespace tape {
 namespace {
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// Where each row of blocks [first, end) ends in the fixed group, counted from `first`; nowhere less than the row before.
-std::vector<int> fixed_profile(const HostBlocks& a, int first, int end) {
-  std::vector<int> profile;
-  int far = 0;
-  for (int i = first; i < end; ++i) {
-    far = std::max(far, i + 1);
-    for (int k = a.row_begin[at(i)]; k < a.row_begin[at(i) + 1]; ++k)
-      if (a.fixed[at(k)] >= 0 && a.col[at(k)] < end) far = std::max(far, a.col[at(k)] + 1);
-    profile.push_back(far - first);
-  }
-  return profile;
-}
 }  // namespace
 
 bool StripFactor::in_band(int i, int j) const {
