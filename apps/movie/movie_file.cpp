@@ -7,16 +7,6 @@ video::VideoSettings video_settings(const PictureParams& params, const Movie& mo
   settings.width = movie.width(), settings.height = movie.height();  // a calibrated camera brings its own size
   return settings;
 }
-
-Stage stage_of(const cosim::StateReader& recording, const PictureParams& params) {
-  if (recording.frames() == 0) throw InputError("the recording holds no state");
-  Survey survey(params);
-  for (int i = 0; i < recording.frames(); ++i) {
-    const RecordedFrame frame = recording.frame(i);
-    survey.add(recording.mesh(frame.mesh), frame);
-  }
-  return survey.stage();
-}
 }  // namespace
 
 MovieFile::MovieFile(const PictureParams& params, const Stage& stage, const RecordedMesh& mesh, const RecordedFrame& first,

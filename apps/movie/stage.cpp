@@ -84,4 +84,13 @@ std::vector<Real> color_values(ColorBy color, const RecordedMesh& mesh, const Re
   }
   return report::vertex_strain(mesh.triangles, mesh.rest, x, mesh.strip_vertices);
 }
+Stage stage_of(const cosim::StateReader& recording, const PictureParams& params) {
+  if (recording.frames() == 0) throw InputError("the recording holds no state");
+  Survey survey(params);
+  for (int i = 0; i < recording.frames(); ++i) {
+    const RecordedFrame frame = recording.frame(i);
+    survey.add(recording.mesh(frame.mesh), frame);
+  }
+  return survey.stage();
+}
 }  // namespace tape::movie

@@ -33,6 +33,9 @@ class Survey {
   std::vector<Real> peaks_;  // of each state
 };
 
+/// That of a whole recording.  @throws InputError where it holds no state
+Stage stage_of(const cosim::StateReader& recording, const PictureParams& params);
+
 /// Whether colours tell things apart, not values.
 bool by_thing(render::ColorBy color);
 /// [nv] what colours mean: of strips; forces of bodies only where there is no strip, for they stand on vertices that may be far from where

@@ -42,7 +42,12 @@ std::string range(const std::vector<PlotPoint>& points, Real PlotPoint::*axis, R
   return " [" + tape::to_text((*low).*axis / below) + ':' + tape::to_text((*high).*axis * above) + "]\n";
 }
 
-std::string script(const Plot& plot, const std::string& terminal, const std::string& output) {
+std::string axes(const std::string& title, const std::string& x_label, const std::string& y_label) {
+  return "set title " + quoted(title) + " noenhanced\nset xlabel " + quoted(x_label) + " noenhanced\nset ylabel " + quoted(y_label) +
+         " noenhanced\nset grid\nset key top right\n";
+}
+
+std::string panel(const Plot& plot) {
   std::vector<PlotPoint> all, front, others;
   for (const PlotPoint& p : plot.points)
     if (can_show(p)) {
@@ -50,9 +55,7 @@ std::string script(const Plot& plot, const std::string& terminal, const std::str
       (p.pareto ? front : others).push_back(p);
     }
   if (all.empty()) throw InputError("plot \"" + plot.title + "\": no point is positive and finite");
-  std::string text = "set terminal " + terminal + "\nset output " + quoted(output) + '\n';
-  text += "set title " + quoted(plot.title) + " noenhanced\nset xlabel " + quoted(plot.x_label) + " noenhanced\n";
-  text += "set ylabel " + quoted(plot.y_label) + " noenhanced\nset logscale xy\nset format '%g'\nset grid\nset key top right\n";
+  std::string text = axes(plot.title, plot.x_label, plot.y_label) + "set logscale xy\nset format '%g'\n";
   text += "set xrange" + range(all, &PlotPoint::x, 2, 10) + "set yrange" + range(all, &PlotPoint::y, 2, 2);
   text += data_block("all", all) + data_block("front", front) + data_block("others", others);
   text += "plot $all using 1:2 with points pointtype 7 pointsize 0.8 linecolor rgb '#7a8ba8' title 'runs'";
@@ -64,11 +67,40 @@ std::string script(const Plot& plot, const std::string& terminal, const std::str
   return text + '\n';
 }
 
+std::string panel(const Curves& curves) {
+  std::string blocks, lines;
+  int k = 0;
+  for (const Curve& curve : curves.curves) {
+    std::string full, hollow;
+    for (const CurvePoint& p : curve.points)
+      if (std::isfinite(p.x) && std::isfinite(p.y)) (p.hollow ? hollow : full) += tape::to_text(p.x) + ' ' + tape::to_text(p.y) + '\n';
+    if (full.empty() && hollow.empty()) continue;
+    const std::string name = std::to_string(++k), style = " linecolor " + name;
+    blocks += "$all" + name + " << EOD\n" + full + hollow + "EOD\n$hollow" + name + " << EOD\n" + hollow + "EOD\n";
+    lines += std::string(k == 1 ? "plot " : ", ") + "$all" + name + " using 1:2 smooth unique with lines linewidth 1.5" + style +
+             " title " + quoted(curve.name);
+    if (!hollow.empty()) lines += ", $hollow" + name + " using 1:2 with points pointtype 6 pointsize 0.5" + style + " notitle";
+  }
+  if (k == 0) throw InputError("plot \"" + curves.title + "\": no point is finite");
+  return axes(curves.title, curves.x_label, curves.y_label) + "set yrange [0:*]\n" + blocks + lines + '\n';
+}
+
 void run_gnuplot(const std::string& text) {
   video::Process gnuplot({"gnuplot", "-"});
   const bool sent = gnuplot.send(std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
   const bool done = gnuplot.wait();
   if (!sent || !done) throw InputError("gnuplot failed: " + gnuplot.messages());
+}
+
+void draw(const std::string& text, int width, int height, const std::filesystem::path& base) {
+  const std::string style = fmt::format(" size {},{} font 'DejaVu Sans,12' background 'white'", width, height);
+  for (const auto& [extension, terminal] : {std::pair{".png", "pngcairo"}, std::pair{".svg", "svg"}}) {
+    std::filesystem::path name = base;
+    name += extension;
+    cosim::NewFile file(name);
+    run_gnuplot("set terminal " + (terminal + style) + "\nset output " + quoted(file.temporary().string()) + '\n' + text);
+    file.commit();
+  }
 }
 }  // namespace
 
@@ -89,17 +121,12 @@ std::vector<bool> pareto_front(const std::vector<Real>& cost, const std::vector<
   return front;
 }
 
-void write_plot(const Plot& plot, const std::filesystem::path& base) {
-  struct Format {
-    const char *extension, *terminal;
-  };
-  for (const auto& [extension, terminal] : {Format{".png", "pngcairo size 1200,800 font 'DejaVu Sans,12' background 'white'"},
-                                            Format{".svg", "svg size 1200,800 font 'DejaVu Sans,12' background 'white'"}}) {
-    std::filesystem::path name = base;
-    name += extension;
-    cosim::NewFile file(name);
-    run_gnuplot(script(plot, terminal, file.temporary().string()));
-    file.commit();
-  }
+void write_plot(const Plot& plot, const std::filesystem::path& base) { draw(panel(plot), 1200, 800, base); }
+
+void write_page(const std::vector<std::variant<Curves, Plot>>& panels, const std::filesystem::path& base) {
+  const auto rows = static_cast<int>(panels.size() + 1) / 2;
+  std::string text = "set multiplot layout " + std::to_string(rows) + ",2\n";
+  for (const auto& one : panels) text += "reset\n" + std::visit([](const auto& p) { return panel(p); }, one);
+  draw(text + "unset multiplot\n", 1600, 500 * rows, base);
 }
 }  // namespace tape::report

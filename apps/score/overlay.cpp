@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -52,6 +54,22 @@ render::Picture blended(const render::Picture& real, const render::Picture& simu
   render::Picture picture(real.width, real.height);
   cv::addWeighted(matrix(real), 1 - share, matrix(simulated), share, 0, matrix(picture));
   return picture;
+}
+
+render::Picture tiled(const std::vector<render::Picture>& pictures, int columns, int width) {
+  TAPE_CHECK(!pictures.empty() && columns > 0);
+  const int w = std::min(pictures[0].width, width / columns) / 2 * 2;
+  const int h = static_cast<int>(std::lround(Real(w) * pictures[0].height / pictures[0].width)) / 2 * 2;
+  const int rows = (static_cast<int>(pictures.size()) + columns - 1) / columns;
+  render::Picture whole(columns * w, rows * h);
+  std::ranges::fill(whole.rgb, std::uint8_t{255});
+  for (int i = 0; const render::Picture& picture : pictures) {
+    render::Picture tile(w, h);
+    cv::resize(matrix(picture), matrix(tile), {w, h}, 0, 0, cv::INTER_AREA);
+    paste(whole, tile, i % columns * w, i / columns * h);
+    ++i;
+  }
+  return whole;
 }
 
 void draw_landmarks(render::Picture& picture, const FrameError& frame) {

@@ -18,6 +18,10 @@ render::Picture undistorted(const render::Picture& photograph, const cosim::Cali
 /// @param share  [1] in [0, 1]  @throws InputError if their sizes differ
 render::Picture blended(const render::Picture& real, const render::Picture& simulated, Real share = 0.5);
 
+/// Pictures of one size in rows of `columns`, made smaller where the whole would be wider than `width` px; its sides are even. What is left
+/// of the last row is white.
+render::Picture tiled(const std::vector<render::Picture>& pictures, int columns, int width);
+
 /// Colours of marks, red, green, blue.
 inline constexpr std::array<std::uint8_t, 3> kRealColor{255, 160, 0}, kSimulatedColor{0, 160, 255};
 

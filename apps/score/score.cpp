@@ -20,6 +20,11 @@ std::size_t nearest(const std::vector<Real>& times, Real t) {
   return i;
 }
 
+render::Camera camera_at(const cosim::EpisodeCamera& camera, Real t, const Pose& X_WB) {
+  const Pose& X_BC = camera.poses[camera.times.empty() ? 0 : nearest(camera.times, t)];
+  return render::Camera::make(camera.calibration, {X_WB.rotation * X_BC.rotation, apply(X_WB, X_BC.position)});
+}
+
 std::vector<FrameError> frame_errors(const cosim::LandmarkTrack& real, const cosim::EpisodeCamera& camera, const SimulatedHub& simulated,
                                      Real start) {
   const std::size_t states = simulated.times.size();
@@ -35,10 +40,8 @@ std::vector<FrameError> frame_errors(const cosim::LandmarkTrack& real, const cos
     frame.state = nearest(simulated.times, frame.time);
     frame.time_offset = simulated.times[frame.state] - frame.time;
     frame.real = real.undistorted ? mark.pixel : camera.calibration.undistorted(mark.pixel);
-    const Pose& X_BC = camera.poses[camera.times.empty() ? 0 : nearest(camera.times, mark.time)];
     const Pose X_WB = simulated.mounts.empty() ? Pose{} : simulated.mounts[frame.state];
-    const Pose X_WC{X_WB.rotation * X_BC.rotation, apply(X_WB, X_BC.position)};
-    const auto seen = hub_landmark(render::Camera::make(camera.calibration, X_WC), simulated.states[frame.state], mark.kind);
+    const auto seen = hub_landmark(camera_at(camera, mark.time, X_WB), simulated.states[frame.state], mark.kind);
     frame.in_front = seen.has_value();
     frame.simulated = seen.value_or(Vec2::Zero());
     frames.push_back(frame);

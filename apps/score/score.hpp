@@ -10,6 +10,10 @@ namespace tape::score {
 /// @param times  [n >= 1] s, increasing
 std::size_t nearest(const std::vector<Real>& times, Real t);
 
+/// The ideal lens of a recorded camera, where that stands at time t [s] of the episode's clock: the nearest recorded pose counts.
+/// @param X_WB  of the link that carries it; of the world the identity
+render::Camera camera_at(const cosim::EpisodeCamera& camera, Real t, const Pose& X_WB);
+
 /// One frame that has a visible real landmark.
 struct FrameError {
   Real time = 0;          ///< [s] since the start of the replay

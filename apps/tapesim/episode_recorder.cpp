@@ -72,12 +72,12 @@ EpisodeRecorder::EpisodeRecorder(const fs::path& file, const SceneArguments& sce
     if (!pinhole) continue;
     const cosim::Calibration& c = pinhole->calibration;
     const Pose X_BC{rotation_exp(pinhole->rotation), pinhole->position};
-    views_.push_back({Mount(pinhole->mount, world_, stepper_), X_BC});
+    mounts_.emplace_back(pinhole->mount, world_, stepper_);
     episode_.cameras.push_back(
         {.name = pinhole->name, .calibration = c, .mount = pinhole->mount.empty() ? "world" : pinhole->mount, .poses = {X_BC}});
     episode_.landmarks.push_back({.camera = pinhole->name, .body = "hub", .width = c.width, .height = c.height});
   }
-  if (views_.empty()) throw InputError("--record: the scene has no calibrated camera, one with fx, fy, cx, cy");
+  if (mounts_.empty()) throw InputError("--record: the scene has no calibrated camera, one with fx, fy, cx, cy");
   const auto mesh = cosim::RecordedMesh::of(world_, loaded.input.run.robots, loaded.input.run.phases, "", "");
   for (const cosim::RecordedObject& object : mesh.objects) {
     if (object.name == "hub") continue;
@@ -107,11 +107,9 @@ void EpisodeRecorder::add_joints(const State& state) {
 void EpisodeRecorder::add_landmarks(const State& state) {
   obstacles_.x = vertex_positions(world_, state);
   const score::Hub hub = hub_.at(state);
-  for (std::size_t c = 0; c < views_.size(); ++c) {
+  for (std::size_t c = 0; c < mounts_.size(); ++c) {
     const cosim::Calibration& calibration = episode_.cameras[c].calibration;
-    const Pose X_WB = views_[c].mount.at(state);
-    const auto camera =
-        render::Camera::make(calibration, {X_WB.rotation * views_[c].X_BC.rotation, tape::apply(X_WB, views_[c].X_BC.position)});
+    const render::Camera camera = score::camera_at(episode_.cameras[c], state.time, mounts_[c].at(state));
     const score::Sight sight = sight_of(camera, hub, obstacles_);
     cosim::Landmark mark{.time = state.time, .kind = sight.kind, .visible = false};
     if (const auto ideal = hub_landmark(camera, hub, sight.kind); ideal && sight.share >= kVisible) {

@@ -23,10 +23,6 @@ class EpisodeRecorder {
   void commit() const;
 
  private:
-  struct View {
-    Mount mount;
-    Pose X_BC;
-  };
   void add_joints(const State& state);
   void add_landmarks(const State& state);
   std::string replay_text() const;
@@ -37,8 +33,8 @@ class EpisodeRecorder {
   const cosim::CoupledStepper* stepper_;
   HubShape hub_;
   cosim::Episode episode_;
-  std::vector<int> robots_;  // [streams]
-  std::vector<View> views_;  // [cameras]
+  std::vector<int> robots_;    // [streams]
+  std::vector<Mount> mounts_;  // [cameras]
   score::Obstacles obstacles_;
   cosim::RecordClock motion_, pictures_;
   std::uint64_t seed_;

@@ -31,9 +31,10 @@ HubShape::HubShape(const World& world, const std::string& name) : body_(find_bod
   offset_ = -world.assembly.bodies[static_cast<std::size_t>(body_)].mesh_offset;
 }
 
-score::Hub HubShape::at(const State& state) const {
+score::Hub HubShape::at(const State& state) const { return at(state.bodies[static_cast<std::size_t>(body_)].pose); }
+
+score::Hub HubShape::at(const Pose& X_WB) const {
   score::Hub hub = shape_;
-  const Pose& X_WB = state.bodies[static_cast<std::size_t>(body_)].pose;
   hub.X_WH = {X_WB.rotation, tape::apply(X_WB, offset_)};
   return hub;
 }

@@ -10,6 +10,7 @@ class HubShape {
  public:
   HubShape(const World& world, const std::string& name);
   score::Hub at(const State& state) const;
+  score::Hub at(const Pose& X_WB) const;  ///< where the body is so
   int body() const { return body_; }
 
  private:

@@ -7,6 +7,7 @@
 
 #include "apps/tapesim/interrupt.hpp"
 #include "apps/tapesim/progress.hpp"
+#include "apps/tapesim/replay_pictures.hpp"
 #include "apps/tapesim/replay_table.hpp"
 #include "cosim/run/new_file.hpp"
 #include "tape/core/execution.hpp"
@@ -19,6 +20,8 @@ struct ReplayArguments {
   std::string file, out, model, record, backend = "auto";
   std::vector<std::string> overrides;
   int threads = 0, repeats = 0;
+  bool start = false, video = false;
+  std::vector<double> stills;
 };
 
 /// An episode with a model, not yet run.
@@ -69,8 +72,7 @@ class ReplayGrid {
       const OnStep on_step = [&](const State& now, const cosim::StepRow& row) {
         progress.update(++steps_made_, fmt::format("{}, t {:.2f} s, {:.0f} ms/step", what, now.time, row.report.wall_ms));
       };
-      const fs::path folder = folder_ / slot.run.episode / slot.run.model / std::to_string(slot.run.repeat);
-      if (!simulate_replay(loaded, folder, record, backend_, on_step, slot.run)) return false;
+      if (!simulate_replay(loaded, folder_of(slot.run), record, backend_, on_step, slot.run)) return false;
       keep(store_, slot.key, slot.run);
       slot.done = true;
     }
@@ -82,6 +84,38 @@ class ReplayGrid {
     for (const Slot& slot : slots_)
       if (slot.done) results.runs.push_back(slot.run);
     return results;
+  }
+  /// Writes start_EPISODE_MODEL.png of each combination, without simulating.
+  void draw_starts() const {
+    cosim::make_folder(folder_);
+    for (const Slot& slot : slots_) {
+      if (slot.run.repeat > 1) continue;
+      LoadedReplay loaded = load_replay(slot.what.episode, slot.what.model, plan_.overrides);
+      const fs::path file = folder_ / fmt::format("start_{}_{}.png", slot.run.episode, slot.run.model);
+      render::write_png(file, start_picture(loaded));
+      fmt::print("{}\n", file.string());
+    }
+  }
+  /// Of each episode the first run of each model, side by side.  @param stills  [s]  @return false if interrupted
+  bool draw(const std::vector<double>& stills, bool video) const {
+    for (const std::string& episode : so_far_.episodes) {
+      std::optional<ReplayPictures> pictures;
+      for (const Slot& slot : slots_) {
+        if (slot.run.episode != episode || slot.run.repeat > 1) continue;
+        if (!pictures) pictures.emplace(load_replay(slot.what.episode, slot.what.model, plan_.overrides));
+        pictures->add(slot.run, folder_of(slot.run));
+      }
+      for (double time : stills) {
+        const fs::path file = folder_ / episode / fmt::format("still_{:g}.png", time);
+        render::write_png(file, pictures->at(time));
+        fmt::print("{}\n", file.string());
+      }
+      if (!video) continue;
+      const fs::path file = folder_ / episode / "video.mp4";
+      if (!pictures->write_video(file, watched_video())) return false;
+      fmt::print("{}\n", file.string());
+    }
+    return true;
   }
   std::size_t size() const { return slots_.size(); }
   const ReplayPlan& plan() const { return plan_; }
@@ -107,6 +141,8 @@ class ReplayGrid {
       slots_.push_back(std::move(slot));
     }
   }
+
+  fs::path folder_of(const ReplayRun& run) const { return folder_ / run.episode / run.model / std::to_string(run.repeat); }
 
   ReplayPlan plan_;
   fs::path folder_;
@@ -141,6 +177,10 @@ int replay(const ReplayArguments& arguments) {
   ReplayPlan plan = planned(arguments);
   const fs::path folder = arguments.out.empty() ? "out/" + plan.name : arguments.out;
   ReplayGrid grid(std::move(plan), folder, backend_of(arguments.backend));
+  if (arguments.start) {
+    grid.draw_starts();
+    return kDone;
+  }
   const bool whole = grid.run(arguments.record);
   const ReplayResults results = grid.results();
   if (!whole) fmt::print("interrupted after {} of {} runs; to go on, give the same command again\n", results.runs.size(), grid.size());
@@ -150,7 +190,15 @@ int replay(const ReplayArguments& arguments) {
   cosim::write_text(folder / "runs.csv", report::to_csv(run_table(results)));
   cosim::write_text(folder / "frames.csv", report::to_csv(frame_table(results)));
   fmt::print("{}\n", (folder / "{replay,runs,frames}.csv").string());
+  if (const auto page = replay_page(results); !page.empty()) {
+    report::write_page(page, folder / "replay");
+    fmt::print("{}\n", (folder / "replay.{png,svg}").string());
+  }
   if (!whole) return kInterrupted;
+  if ((arguments.video || !arguments.stills.empty()) && !grid.draw(arguments.stills, arguments.video)) {
+    fmt::print("interrupted: no video; to make it, give the same command again\n");
+    return kInterrupted;
+  }
   const bool failed = std::ranges::any_of(results.runs, [](const ReplayRun& run) { return !run.failure.empty(); });
   return failed ? kFailed : kDone;
 }
@@ -166,6 +214,13 @@ void add_replay(CLI::App& app, Action& chosen) {
   command->add_option("--model", arguments->model, "this model alone: coh-f, bond-f, coh-r or bond-r");
   command->add_option("--repeats", arguments->repeats, "runs of each episode with each model")->check(CLI::Range(1, 100));
   command->add_option("--record", arguments->record, "also writes the run as a synthetic episode, FILE.h5 and FILE.yaml, as run does");
+  command->add_flag("--start", arguments->start,
+                    "no run: pictures of the start as the camera sees it, over the recorded photograph where there is one, to check that "
+                    "all stands where it stood");
+  command->add_flag("--video", arguments->video, "also makes a video of each episode: photographs and models side by side, with landmarks");
+  command->add_option("--still", arguments->stills, "likewise a PNG at this time in s; may be repeated")
+      ->check(CLI::NonNegativeNumber)
+      ->allow_extra_args(false);
   command->add_option("--backend", arguments->backend, "auto, cpu or cuda")->check(CLI::IsMember({"auto", "cpu", "cuda"}));
   command->add_option("--threads", arguments->threads, "threads of the CPU back end; 0: all cores")->check(CLI::Range(0, 1024));
   command->callback([arguments, &chosen] { chosen = [arguments] { return replay(*arguments); }; });

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace tape::tapesim {
 namespace {
 constexpr const char* kNone = "";
@@ -27,6 +29,11 @@ ModelResult result_of(const ReplayResults& results, const std::string& model) {
   if (simulated > 0) result.per_simulated_second = result.seconds / simulated;
   if (result.runs > 0) result.seconds /= result.runs;
   return result;
+}
+std::vector<score::FrameMean> frames_of(const ReplayResults& results, const std::string& model, const std::string& episode) {
+  std::vector<std::vector<score::FrameError>> runs;
+  for (const ReplayRun* run : results.repeats(model, episode)) runs.push_back(run->frames);
+  return score::mean_errors(runs);
 }
 }  // namespace
 
@@ -97,12 +104,39 @@ report::Table run_table(const ReplayResults& results) {
 report::Table frame_table(const ReplayResults& results) {
   report::Table table{{"episode", "model", "time_s", "error_px", "estimated", "data"}, {}};
   for (const std::string& episode : results.episodes)
-    for (const std::string& model : results.models) {
-      std::vector<std::vector<score::FrameError>> runs;
-      for (const ReplayRun* run : results.repeats(model, episode)) runs.push_back(run->frames);
-      for (const score::FrameMean& frame : score::mean_errors(runs))
+    for (const std::string& model : results.models)
+      for (const score::FrameMean& frame : frames_of(results, model, episode))
         table.rows.push_back({episode, model, to_text(frame.time), to_text(frame.error), frame.estimated ? "1" : "0", data_of(results)});
-    }
   return table;
+}
+
+std::vector<std::variant<report::Curves, report::Plot>> replay_page(const ReplayResults& results) {
+  std::vector<std::variant<report::Curves, report::Plot>> page;
+  for (const std::string& episode : results.episodes) {
+    report::Curves curves{fmt::format("{} ({})", episode, data_of(results)), "time [s]", "error [px]", {}};
+    bool any = false;
+    for (const std::string& model : results.models) {
+      report::Curve curve{model, {}};
+      for (const score::FrameMean& frame : frames_of(results, model, episode))
+        curve.points.push_back({frame.time, frame.error, frame.estimated});
+      any = any || !curve.points.empty();
+      curves.curves.push_back(std::move(curve));
+    }
+    if (any) page.emplace_back(std::move(curves));
+  }
+  if (page.empty()) return page;
+  report::Plot price{fmt::format("accuracy and its price ({})", data_of(results)), "time [s] per simulated second", "mean error [px]", {}};
+  std::vector<Real> cost, error;
+  for (const ModelResult& result : results.by_model()) {
+    if (!result.score) continue;
+    price.points.push_back({result.per_simulated_second, result.score->mean, result.model});
+    cost.push_back(result.per_simulated_second), error.push_back(result.score->mean);
+  }
+  const std::vector<bool> front = report::pareto_front(cost, error);
+  for (std::size_t i = 0; i < front.size(); ++i) price.points[i].pareto = front[i];
+  for (const ReplayRun& run : results.runs)
+    if (!run.frames.empty()) price.points.push_back({run.seconds / run.simulated, run.score.mean_error, ""});
+  if (std::ranges::any_of(price.points, [](const report::PlotPoint& p) { return p.x > 0 && p.y > 0; })) page.emplace_back(std::move(price));
+  return page;
 }
 }  // namespace tape::tapesim

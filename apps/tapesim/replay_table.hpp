@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 
+#include "apps/report/plot.hpp"
 #include "apps/report/table.hpp"
 #include "apps/tapesim/replay_plan.hpp"
 #include "apps/tapesim/replay_run.hpp"
@@ -33,4 +34,7 @@ report::Table model_table(const ReplayPlan& plan, const ReplayResults& results, 
 report::Table run_table(const ReplayResults& results);
 /// A row for each frame of an episode and model: error [px], mean over the repeats.
 report::Table frame_table(const ReplayResults& results);
+/// Of each episode the error over time of each model, mean over the repeats, rings where the real landmark is estimated; and the mean
+/// errors of models and runs against their time. Without what cannot be shown.
+std::vector<std::variant<report::Curves, report::Plot>> replay_page(const ReplayResults& results);
 }  // namespace tape::tapesim

@@ -123,6 +123,23 @@ std::string read_camera(const SceneFile& file, Episode& episode) {
   return chosen.name;
 }
 
+Photographs read_photographs(const SceneFile& file, const std::string& camera) {
+  Photographs photographs;
+  const Reader section = file["pictures"];
+  if (!section) return photographs;
+  if (camera.empty()) section.fail("are of no camera: camera is missing");
+  section.read(photographs);
+  const Reader folder = section["folder"];
+  const fs::path beside = fs::absolute(file.path()).parent_path() / folder.text();
+  if (!fs::is_directory(beside)) folder.fail("there is no such folder beside this file");
+  for (const fs::directory_entry& entry : fs::directory_iterator(beside))
+    if (const std::string kind = entry.path().extension(); kind == ".png" || kind == ".jpg" || kind == ".jpeg")
+      photographs.files.push_back(entry.path());
+  if (photographs.files.empty()) folder.fail("holds no photograph (allowed: .png, .jpg, .jpeg)");
+  std::ranges::sort(photographs.files);
+  return photographs;
+}
+
 /// Knots of the joints of one stream that move one robot.
 robot::JointTrajectory trajectory_of(const Replay& replay, const MotionStream& stream, const RobotPart& part) {
   const bool measured = replay.params.follow == Follow::measured;
@@ -185,6 +202,7 @@ Replay read_replay(const SceneFile& file) {
   for (const std::string& key : set.keys()) replay.overrides.push_back(key + "=" + set[key].text());
   file.root().read(replay.params);
   replay.camera = read_camera(file, replay.episode);
+  replay.photographs = read_photographs(file, replay.camera);
   const auto [first, last] = replay.episode.common();
   replay.start = file["start"].number_or(first, Range::closed(first, last), "s");
   replay.joints = read_joints(file["joints"], replay.episode);

@@ -30,6 +30,18 @@ struct DrivenJoint {
   std::string where = "";  ///< "file:line"
 };
 
+/// Photographs that the camera of a replay took, at equal intervals.
+struct Photographs {
+  std::vector<std::filesystem::path> files;  ///< in the order of their names, which is that of time
+  Real rate = 30;                            ///< [1/s]
+  Real first = 0;                            ///< [s] on the episode's clock, of the first
+  template <class F>
+  void fields(F&& f) {
+    f("rate", rate, "1/s", Range::above(0, 1e4), "photographs per second");
+    f("first", first, "s", Range::closed(-1e6, 1e6), "time of the first on the recording's clock");
+  }
+};
+
 /// What EPISODE.yaml asks for (README.md): a scene, a recording, and how one moves in the other.
 struct Replay {
   std::string name;
@@ -37,7 +49,8 @@ struct Replay {
   std::vector<std::string> overrides;  ///< of keys of the scene: "path.to.key=value"
   Episode episode;
   std::string camera;  ///< in whose pictures it is scored; its calibration may have been replaced; empty: not scored
-  Real start = 0;      ///< [s] on the episode's clock, at which the simulation's time is 0
+  Photographs photographs;
+  Real start = 0;  ///< [s] on the episode's clock, at which the simulation's time is 0
   ReplayParams params;
   std::vector<DrivenJoint> joints;
 };

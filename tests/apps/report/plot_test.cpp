@@ -67,3 +67,14 @@ TEST_F(PlotFile, WithoutGnuplotSaysSoAndLeavesNothing) {
 TEST_F(PlotFile, WithoutAnyPointToShowIsRefused) {
   EXPECT_THROW(write_plot({"none", "", "", {{0, 1, "", false}}}, folder / "study"), InputError);
 }
+TEST_F(PlotFile, APageHoldsCurvesWithTheirUncertainPointsAndAPlot) {
+  const Curves curves{"episode 1", "time [s]", "error [px]", {{"coh-f", {{0, 1}, {1, 2, true}, {2, std::nan("")}}}, {"nothing", {}}}};
+  write_page({curves, kPlot, curves}, folder / "page");
+  EXPECT_EQ(read(folder / "page.png").substr(1, 3), "PNG");
+  const std::string svg = read(folder / "page.svg");
+  for (const char* text : {"episode 1", "coh-f", "error [px]", "a study", "Pareto front"}) EXPECT_THAT(svg, HasSubstr(text));
+  EXPECT_THAT(svg, testing::Not(HasSubstr("nothing")));
+}
+TEST_F(PlotFile, CurvesWithoutAnyPointAreRefused) {
+  EXPECT_THROW(write_page({Curves{"none", "", "", {{"coh-f", {}}}}}, folder / "page"), InputError);
+}

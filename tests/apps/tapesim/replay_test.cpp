@@ -4,8 +4,11 @@
 #include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <sstream>
 
+#include "apps/render/picture.hpp"
 #include "cosim/episode/episode_file.hpp"
 #include "cosim/run/state_file.hpp"
 #include "tests/apps/tapesim/program.hpp"
@@ -46,6 +49,14 @@ camera:
   - {name: wrist, fx: 600, fy: 600, cx: 423.5, cy: 239.5, width: 848, height: 480, mount: "tray:tray", position: [0, 0, 0.4255],
      rotation: [3.14159265358979, 0, 0]}
 )";
+
+using tape::render::Picture;
+Picture picture(const std::string& file) {
+  cv::Mat read = cv::imread(file);
+  Picture picture(read.cols, read.rows);
+  cv::cvtColor(read, cv::Mat(read.rows, read.cols, CV_8UC3, picture.rgb.data()), cv::COLOR_BGR2RGB);
+  return picture;
+}
 
 /// The cells of a column of a CSV file whose header has it.
 std::vector<std::string> column(const std::filesystem::path& file, const std::string& name) {
@@ -208,6 +219,51 @@ TEST_F(ReplayCommand, AnEpisodeWithoutACameraIsReplayedAndNotScored) {
   const Outcome outcome = replay("blind", kPosed);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(column(at("out_blind/replay.csv"), "mean_px"), std::vector<std::string>{""});
+}
+TEST_F(ReplayCommand, PicturesShowPhotographsAndRunsSideBySide) {
+  Picture dark(848, 480), light(848, 480);
+  std::ranges::fill(light.rgb, std::uint8_t{200});
+  std::filesystem::create_directory(at("photos"));
+  tape::render::write_png(at("photos/a.png"), dark);
+  tape::render::write_png(at("photos/b.png"), light);
+  variant("shown", nothing, {{"camera: ego", "camera: ego\npictures: {folder: photos, rate: 2}"}});
+  std::vector<std::string> arguments = kPosed;
+  arguments.insert(arguments.end(), {"--video", "--still", "0", "--still", "0.5"});
+  const Outcome outcome = replay("shown", arguments);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(folder->names("out_shown"), testing::IsSupersetOf({"replay.png", "replay.svg"}));
+  EXPECT_THAT(folder->names("out_shown/shown"), testing::UnorderedElementsAre("none", "still_0.png", "still_0.5.png", "video.mp4"));
+  const Picture first = picture(at("out_shown/shown/still_0.png")), later = picture(at("out_shown/shown/still_0.5.png"));
+  EXPECT_EQ(first.width, 2 * 848);
+  EXPECT_EQ(first.at(600, 400)[0], 0) << "the photograph at 0 s";
+  EXPECT_EQ(later.at(600, 400)[0], 200) << "that at 0.5 s";
+  // The ring about the real landmark: 7 px beside the rim's centre, which moves from 393.5 px to 468.5 px between 0.1 s and 0.6 s. The
+  // cross is drawn on the simulated one alone.
+  EXPECT_GT(first.at(394 + 7, 255)[0], 200);
+  EXPECT_EQ(first.at(394, 255)[2], 0) << "nothing is simulated in a photograph";
+  EXPECT_GT(first.at(848 + 394, 255)[2], 150) << "the cross is blue";
+}
+TEST_F(ReplayCommand, TheStartIsShownOverThePhotographWithoutARun) {
+  Picture light(848, 480);
+  std::ranges::fill(light.rgb, std::uint8_t{255});
+  std::filesystem::create_directory(at("first"));
+  tape::render::write_png(at("first/a.png"), light);
+  variant("alone", nothing);
+  variant("over", nothing, {{"camera: ego", "camera: ego\npictures: {folder: first, rate: 2}"}});
+  for (const char* name : {"alone", "over"}) {
+    const Outcome outcome = replay(name, {"--start"});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(folder->names(std::string("out_") + name), testing::ElementsAre(std::string("start_") + name + "_none.png"));
+  }
+  const Picture alone = picture(at("out_alone/start_alone_none.png")), over = picture(at("out_over/start_over_none.png"));
+  for (const auto& [x, y] : {std::pair{394, 255}, std::pair{100, 100}, std::pair{340, 300}})
+    EXPECT_NEAR(over.at(x, y)[1], (255 + alone.at(x, y)[1]) / 2.0, 1);
+}
+TEST_F(ReplayCommand, PicturesNeedACamera) {
+  variant_text("unseen", {{"camera: ego\n", ""}, {"recording: unseen.h5", "recording: real.h5"}});
+  const Outcome outcome = replay("unseen", {"--start"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("unseen: names no camera"));
 }
 TEST_F(ReplayCommand, SettingsOfAnEpisodeGoToItsScene) {
   variant_text("set", {{"camera: ego\n", "camera: ego\nset: {exchange.schedule: posed, time.dt: 0.02}\n"}, {"set.h5", "real.h5"}});

@@ -1,5 +1,7 @@
 #include "cosim/episode/replay_file.hpp"
 
+#include <fstream>
+
 #include "cosim/episode/episode_file.hpp"
 #include "tests/cosim/episode/episodes.hpp"
 using namespace cosim;
@@ -94,6 +96,21 @@ TEST_F(ReplayFile, BadOnesAreRefusedByLineAndKey) {
   refused(kHead + "start: 3\n" + kJoints, {":5: start = 3", "[0, 2] s"});
   refused(kHead + "lead_inn: 3\n" + kJoints, {":5: lead_inn", "did you mean lead_in?"});
   refused(kHead, {"joints", "missing"});
+}
+TEST_F(ReplayFile, PhotographsAreTakenInTheOrderOfTheirNames) {
+  std::filesystem::create_directory(folder / "photos");
+  for (const char* name : {"2.jpg", "1.png", "notes.txt", "3.jpeg"}) std::ofstream(folder / "photos" / name) << "x";
+  const Photographs photographs = read(kHead + "pictures: {folder: photos, rate: 15, first: 0.2}\n" + kJoints).photographs;
+  ASSERT_EQ(photographs.files.size(), 3u);
+  EXPECT_EQ(photographs.files[0].filename(), "1.png");
+  EXPECT_EQ(photographs.files[2].filename(), "3.jpeg");
+  EXPECT_EQ(photographs.rate, 15);
+  EXPECT_EQ(photographs.first, 0.2);
+  std::filesystem::create_directory(folder / "empty");
+  refused(kHead + "pictures: {folder: empty}\n" + kJoints, {":5: pictures.folder = empty", "holds no photograph"});
+  refused(kHead + "pictures: {folder: nowhere}\n" + kJoints, {":5: pictures.folder = nowhere", "there is no such folder"});
+  refused(kHead + "pictures: {folder: photos, rate: 0}\n" + kJoints, {"pictures.rate = 0", "1/s"});
+  refused(replaced(kHead, "camera: ego\n", "") + "pictures: {folder: photos}\n" + kJoints, {"pictures", "camera is missing"});
 }
 TEST_F(ReplayFile, ACalibrationOfAnotherResolutionIsRefused) {
   written("ego.yaml", "{fx: 600, fy: 600, cx: 424, cy: 240, width: 848, height: 480}");
