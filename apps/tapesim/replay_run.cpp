@@ -83,8 +83,8 @@ std::string key_of(const LoadedReplay& replay, int repeat, Backend backend) {
   add(cosim::read_whole_file(r.scene, r.scene.string()) + cosim::read_whole_file(r.recording, r.recording.string()));
   add(fmt::format("{}\n", fmt::join(replay.scene.overrides, "\n")));
   for (const cosim::DrivenJoint& joint : r.joints)
-    add(fmt::format("{} {} {} {} {} {}\n", joint.recorded, joint.robot, joint.joint, joint.sign, joint.scale, joint.offset));
-  add(to_text(r.params.follow));
+    add(fmt::format("{} {} {} {} {} {} {}\n", joint.recorded, joint.robot, joint.joint, joint.sign, joint.scale, joint.offset,
+                    to_text(joint.follow)));
   if (!r.camera.empty()) add(r.camera + calibration_text(r.episode.camera(r.camera, r.name).calibration));
   add(report::settings_json(replay.loaded.world.setup, replay.loaded.input.run.robots).dump() + State::start(replay.loaded.world).hash());
   return hash.text();

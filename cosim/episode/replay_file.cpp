@@ -35,7 +35,8 @@ std::vector<std::pair<std::string, Place>> recorded_joints(const Episode& episod
 }
 
 /// @param star  what a * in `drives` stands for
-DrivenJoint read_driven(const Reader& entry, const std::string& recorded, const std::string& star, Unit unit) {
+/// @param follow  unless the entry says otherwise
+DrivenJoint read_driven(const Reader& entry, const std::string& recorded, const std::string& star, Unit unit, Follow follow) {
   const Reader drives = entry["drives"];
   std::string target = drives.text();
   if (const std::size_t at = target.find('*'); at != target.npos) target.replace(at, 1, star);
@@ -51,6 +52,7 @@ DrivenJoint read_driven(const Reader& entry, const std::string& recorded, const 
   const Reader scale = entry["scale"];
   if (unit == Unit::one && !scale) scale.fail("missing; a share moves a joint by a scale in rad or m");
   driven.scale = scale.number_or(1, Range::positive(), "rad or m");
+  driven.follow = entry["follow"] ? entry["follow"].choice<Follow>() : follow;
   driven.offset = entry["offset"].number_or(0, Range::closed(-100, 100), "rad or m");
   return driven;
 }
@@ -82,7 +84,7 @@ std::map<std::string, JointEntry> find_entries(const Reader& section, const std:
   return entries;
 }
 
-std::vector<DrivenJoint> read_joints(const Reader& section, const Episode& episode) {
+std::vector<DrivenJoint> read_joints(const Reader& section, const Episode& episode, Follow follow) {
   if (!section.is_map()) section.fail("missing; must be a section of recorded joints: {drives: robot:joint, unit: rad}, or none");
   const auto recorded = recorded_joints(episode);
   std::vector<std::string> names;
@@ -97,7 +99,7 @@ std::vector<DrivenJoint> read_joints(const Reader& section, const Episode& episo
       if (!entry || entry.text() != "none") entry.fail("must be {drives: robot:joint, unit: ...}, or none where it drives nothing");
       continue;
     }
-    const DrivenJoint driven = read_driven(entry, name, found->second.star, place.unit());
+    const DrivenJoint driven = read_driven(entry, name, found->second.star, place.unit(), follow);
     for (const DrivenJoint& other : all)
       if (other.robot == driven.robot && other.joint == driven.joint) entry["drives"].fail("is driven by " + other.recorded + " already");
     all.push_back(driven);
@@ -142,8 +144,9 @@ Photographs read_photographs(const SceneFile& file, const std::string& camera) {
 
 /// Knots of the joints of one stream that move one robot.
 robot::JointTrajectory trajectory_of(const Replay& replay, const MotionStream& stream, const RobotPart& part) {
-  const bool measured = replay.params.follow == Follow::measured;
-  const std::vector<robot::VecX>& rows = measured ? stream.measured : stream.commanded;
+  const auto rows = [&](const DrivenJoint& driven) -> const std::vector<robot::VecX>& {
+    return driven.follow == Follow::measured ? stream.measured : stream.commanded;
+  };
   robot::JointTrajectory motion{.joints = {}, .times = {}, .knots = {}, .between = robot::JointTrajectory::Between::linear};
   std::vector<std::pair<const DrivenJoint*, std::size_t>> columns;
   for (const DrivenJoint& driven : replay.joints) {
@@ -154,15 +157,15 @@ robot::JointTrajectory trajectory_of(const Replay& replay, const MotionStream& s
     columns.emplace_back(&driven, static_cast<std::size_t>(found - stream.joints.begin()));
   }
   if (columns.empty()) return motion;
-  if (rows.empty())
-    throw InputError(
-        fmt::format("{}: motion {} has no {} positions", columns[0].first->where, stream.name, tape::to_text(replay.params.follow)));
+  for (const auto& [driven, column] : columns)
+    if (rows(*driven).empty())
+      throw InputError(fmt::format("{}: motion {} has no {} positions", driven->where, stream.name, tape::to_text(driven->follow)));
   require_no_gap(stream, replay.start, replay.params.max_gap, columns[0].first->where);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
+  for (std::size_t i = 0; i < stream.times.size(); ++i) {
     robot::VecX q(static_cast<Eigen::Index>(columns.size()));
     for (std::size_t c = 0; c < columns.size(); ++c) {
       const auto& [driven, column] = columns[c];
-      const Real recorded = si_per(stream.joints[column].unit) * rows[i][static_cast<Eigen::Index>(column)];
+      const Real recorded = si_per(stream.joints[column].unit) * rows(*driven)[i][static_cast<Eigen::Index>(column)];
       const Real value = q[static_cast<Eigen::Index>(c)] = driven->sign * driven->scale * recorded + driven->offset;
       const robot::Joint& joint = part.model->joints[static_cast<std::size_t>(part.model->find_joint(driven->joint))];
       if (value < joint.lower - replay.params.slack || value > joint.upper + replay.params.slack)
@@ -205,7 +208,7 @@ Replay read_replay(const SceneFile& file) {
   replay.photographs = read_photographs(file, replay.camera);
   const auto [first, last] = replay.episode.common();
   replay.start = file["start"].number_or(first, Range::closed(first, last), "s");
-  replay.joints = read_joints(file["joints"], replay.episode);
+  replay.joints = read_joints(file["joints"], replay.episode, replay.params.follow);
   file.require_all_used();
   return replay;
 }

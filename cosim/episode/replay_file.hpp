@@ -25,8 +25,9 @@ struct ReplayParams {
 struct DrivenJoint {
   std::string recorded, robot, joint;
   Real sign = 1;
-  Real scale = 1;          ///< [1], of a share [rad or m]
-  Real offset = 0;         ///< [rad or m]
+  Real scale = 1;   ///< [1], of a share [rad or m]
+  Real offset = 0;  ///< [rad or m]
+  Follow follow = Follow::measured;
   std::string where = "";  ///< "file:line"
 };
 

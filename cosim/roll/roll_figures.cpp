@@ -14,18 +14,28 @@ class Roll {
   Roll(const World& world, const State& state, std::size_t strip)
       : world_(world), state_(state), tape_(world.assembly.strips[strip]), hub_(world.setup.scene.strips[strip].winding->hub) {}
 
-  /// [m] rest coordinate of the last place that adheres to the tape itself or to the hub.
+  /// [m] rest coordinate of the last place that adheres to the hub, or to tape that lies on the roll. Tape that adheres to itself elsewhere
+  /// does not count.
   Real end() const {
     Real last = 0;
+    std::vector<std::pair<Real, Real>> layers;  // [m] inner and outer place of pairs of tape
     EffectMemory memory = state_.memory;
     for_each_memory(memory, [&](const auto& pairs) {
       for (const auto& pair : pairs) {
         if (pair.engagement(adhesion_of(world_, pair)) == 0) continue;
         const Index3& face = world_.assembly.triangles[static_cast<std::size_t>(pair.triangle)];
         const int vertex = sticking_vertices(world_, pair)[0];
-        if (part(vertex) && part(face[0])) last = std::max({last, along(vertex), start_of(face)});
+        if (!part(vertex) || !part(face[0])) continue;
+        const auto [inner, outer] = std::minmax({along(vertex), start_of(face)});
+        if (tape(vertex) && tape(face[0]))
+          layers.emplace_back(inner, outer);
+        else
+          last = std::max(last, outer);
       }
     });
+    std::ranges::sort(layers);
+    for (const auto& [inner, outer] : layers)
+      if (inner <= last) last = std::max(last, outer);
     return last;
   }
   /// Seen along the hub's axis, from the axis.

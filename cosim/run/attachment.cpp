@@ -1,6 +1,9 @@
 #include "cosim/run/attachment.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -89,6 +92,33 @@ double covered_seam(const tape::World& world, const tape::State& state, std::siz
     return merged(std::move(spans));
   };
   return length_in_both(covered(first), covered(second));
+}
+
+double attached_turns(const tape::World& world, const tape::State& state, std::size_t strip, double wound, const tape::Vec3& point,
+                      const tape::Vec3& axis) {
+  const std::vector<char> adheres = adhering(world, state, strip, std::nullopt);
+  const tape::Vec3 u = axis.unitOrthogonal(), w = axis.cross(u);
+  const auto angle = [&](int v) {
+    const tape::Vec3 r = state.x[static_cast<std::size_t>(v)] - point;
+    return std::atan2(w.dot(r), u.dot(r));
+  };
+  Real sum = 0, low = 0, high = 0;
+  for_each_triangle(world, strip, [&](const Index3& t) {
+    bool counts = true;
+    std::array<tape::Vec2, 3> X;
+    for (int k = 0; k < 3; ++k) {
+      const auto v = static_cast<std::size_t>(t[k]);
+      X[k] = world.assembly.rest[v];
+      low = std::min(low, X[k].y()), high = std::max(high, X[k].y());
+      counts = counts && adheres[v] && X[k].x() >= wound;
+    }
+    if (!counts) return;
+    // Slope of the angle along the strip, which is constant on a triangle, times its area.
+    const Real first = std::remainder(angle(t[1]) - angle(t[0]), 2 * std::numbers::pi);
+    const Real second = std::remainder(angle(t[2]) - angle(t[0]), 2 * std::numbers::pi);
+    sum += (first * (X[2] - X[0]).y() - second * (X[1] - X[0]).y()) / 2;
+  });
+  return std::fabs(sum) / (high - low) / (2 * std::numbers::pi);
 }
 
 int pieces(const tape::World& world, std::size_t strip) {

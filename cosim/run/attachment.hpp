@@ -15,6 +15,12 @@ double attached_share(const tape::World& world, const tape::State& state, std::s
 double covered_seam(const tape::World& world, const tape::State& state, std::size_t strip, std::size_t first, std::size_t second,
                     const tape::Vec3& along);
 
+/// Turns [1] that what adheres of a strip makes about an axis: the change of the angle along the strip, mean over its width, over triangles
+/// whose vertices all adhere. Turns one way and back again cancel each other. What lies on its roll does not count.
+/// @param wound  [m] of the strip, from its root on, on the roll  @param point, axis  [m], unit vector
+double attached_turns(const tape::World& world, const tape::State& state, std::size_t strip, double wound, const tape::Vec3& point,
+                      const tape::Vec3& axis);
+
 /// Parts of a strip's mesh that share no vertex.
 int pieces(const tape::World& world, std::size_t strip);
 }  // namespace cosim

@@ -53,6 +53,7 @@ Real force(const Thing& thing, const std::string& name, const tape::World& world
 
 /// [m] of the strip, on its roll.
 Real wound_length(const tape::World& world, const tape::State& state, std::size_t strip) {
+  if (!world.setup.scene.strips[strip].winding) return 0;
   const auto figures = roll_figures(world, state, strip);
   return std::ranges::find(figures, "wound_length_m", [](const auto& figure) { return figure.first; })->second;
 }
@@ -64,6 +65,7 @@ double measure(const Claim& claim, const tape::World& world, const tape::State& 
   const auto thing = [&](std::size_t k) { return find_thing(claim.things[k], scene); };
   // Objects of the surface: strips, then bodies.
   const auto object = [&](std::size_t k) { return thing(k).strip ? *thing(k).strip : scene.strips.size() + *thing(k).body; };
+  const auto direction = [&] { return Vec3(state.bodies[*thing(1).body].pose.rotation * claim.along); };
   switch (claim.quantity) {
     case Quantity::force:
       return force(thing(0), claim.things[0], world, report);
@@ -78,9 +80,11 @@ double measure(const Claim& claim, const tape::World& world, const tape::State& 
     case Quantity::attached:
       return attached_share(world, state, object(0), claim.things.size() > 1 ? std::optional(object(1)) : std::nullopt);
     case Quantity::seam:
-      return covered_seam(world, state, object(0), object(1), object(2), state.bodies[*thing(1).body].pose.rotation * claim.along);
+      return covered_seam(world, state, object(0), object(1), object(2), direction());
     case Quantity::pieces:
       return pieces(world, object(0));
+    case Quantity::turns:
+      return attached_turns(world, state, object(0), wound_length(world, state, object(0)), place(thing(1), world, state), direction());
     case Quantity::wound:
       break;
   }

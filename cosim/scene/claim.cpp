@@ -21,6 +21,7 @@ struct Count {
 Count things_of(Quantity quantity) {
   switch (quantity) {
     case Quantity::distance:
+    case Quantity::turns:
       return {2, 2};
     case Quantity::attached:
       return {1, 2};
@@ -37,6 +38,7 @@ Range levels_of(Quantity quantity) {
     case Quantity::seam:
     case Quantity::pieces:
     case Quantity::wound:
+    case Quantity::turns:
       return Range::non_negative();
     default:
       return Range::any();
@@ -89,6 +91,8 @@ class ClaimReader {
         return find_attached(where);
       case Quantity::seam:
         return find_seam(where);
+      case Quantity::turns:
+        return find_axis(where);
       case Quantity::pieces:
         return (void)strip(where);
       case Quantity::wound:
@@ -128,6 +132,14 @@ class ClaimReader {
     strip(where);
     for (const std::size_t side : {1, 2}) choose(where, claim_.things[side], names_of(scene_.bodies));
     if (claim_.things[1] == claim_.things[2]) where.fail("a seam is between two bodies");
+    read_direction();
+  }
+  void find_axis(const Reader& where) {
+    strip(where);
+    choose(where, claim_.things[1], names_of(scene_.bodies));
+    read_direction();
+  }
+  void read_direction() {
     const Reader along = section_["along"];
     claim_.along = along.vector(kPlace, "");
     if (!(claim_.along.norm() > 0)) along.fail("has no direction");

@@ -20,20 +20,21 @@ namespace cosim {
 /// seam: length along a line over which a strip adheres to the bodies on both sides of it
 /// pieces: of a strip, that do not hang together
 /// wound: length of tape that is left on a roll
-enum class Quantity { force, height, speed, distance, joint, attached, seam, pieces, wound };
+/// turns: that what adheres of a strip makes about an axis of a body
+enum class Quantity { force, height, speed, distance, joint, attached, seam, pieces, wound, turns };
 constexpr auto enum_names(Quantity) {
-  return std::array<std::string_view, 9>{"force", "height", "speed", "distance", "joint", "attached", "seam", "pieces", "wound"};
+  return std::array<std::string_view, 10>{"force", "height", "speed", "distance", "joint", "attached", "seam", "pieces", "wound", "turns"};
 }
-constexpr auto unit_names(Quantity) { return std::array<const char*, 9>{"N", "m", "m/s", "m", "rad or m", "1", "m", "1", "m"}; }
+constexpr auto unit_names(Quantity) { return std::array<const char*, 10>{"N", "m", "m/s", "m", "rad or m", "1", "m", "1", "m", "1"}; }
 
 /// That a quantity of a thing is above or below a level.
 struct Claim {
   Quantity quantity = Quantity::force;
-  std::vector<std::string> things;  ///< one; of a distance two, of a seam the strip and both bodies
+  std::vector<std::string> things;  ///< one; of a distance two, of a seam the strip and both bodies, of turns the strip and the body
   bool above = true;
   double level = 0;            ///< in the quantity's unit
   int robot = -1, joint = -1;  ///< of a joint: the robot, and which of its joints
-  Vec3 along = Vec3::Zero();   ///< of a seam: unit vector in the frame of the first body
+  Vec3 along = Vec3::Zero();   ///< of a seam or of turns: unit vector in the frame of the first body
 };
 /// "force of pull above 2 N"
 std::string to_text(const Claim& claim);

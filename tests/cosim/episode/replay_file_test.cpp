@@ -76,6 +76,22 @@ TEST_F(ReplayFile, RobotsMoveAsRecordedBySignScaleUnitAndOffset) {
   EXPECT_NEAR(robots.robots[0].start[1], 0.5 - 15 * std::numbers::pi / 180, 1e-12);
   EXPECT_NEAR(robots.robots[1].start[1], 2 * (1.2 * 0.25) + 0.1, 1e-12) << "what follows starts with what it follows";
 }
+TEST_F(ReplayFile, AJointMayFollowWhatItWasCommanded) {
+  Episode episode = small_episode();
+  for (MotionStream& stream : episode.streams) {
+    stream.commanded = stream.measured;
+    for (robot::VecX& row : stream.commanded) row.array() += 0.0625;
+  }
+  write_episode(folder / "e.h5", episode);
+  RobotScene robots = arm_and_hand();
+  add_motions(read(kHead + replaced(kJoints, "unit: 1, scale: 1.2", "unit: 1, scale: 1.2, follow: commanded")), robots);
+  const std::vector<robot::JointCommand> arm = RobotScript(robots.robots[0], {}).commands_at(1),
+                                         hand = RobotScript(robots.robots[1], {}).commands_at(0.75);
+  EXPECT_NEAR(arm[0].position, 0.020, 1e-12) << "the slide as measured at 1 s: 10 + 10 t mm";
+  EXPECT_NEAR(hand[0].position, 1.2 * (0.375 + 0.0625), 1e-12) << "the thumb at 0.75 s: t / 2, and 1/16 more as commanded";
+  write_episode(folder / "e.h5", small_episode());
+  not_driven(kHead + replaced(kJoints, "unit: 1, scale: 1.2", "unit: 1, scale: 1.2, follow: commanded"), {":8", "no commanded positions"});
+}
 TEST_F(ReplayFile, AJointMayDriveNothing) {
   RobotScene robots = arm_and_hand();
   add_motions(read(kHead + replaced(kJoints, "{drives: hand:bend, unit: 1, scale: 1.2}", "none")), robots);

@@ -81,6 +81,20 @@ TEST(SettledRoll, WoundTheOtherWayIsItsMirrorImage) {
   EXPECT_LT((tips[0] - Vec3(-tips[1].x(), -tips[1].y(), tips[1].z())).norm(), 1e-12);
 }
 
+TEST(SettledRoll, TapeThatAdheresToItselfFarFromTheRollIsNotWound) {
+  cosim::SettledRoll roll = settled({"roll.free_length=0.1"});
+  const Real before = figures(roll).at("wound_length_m");
+  const int tip = static_cast<int>(roll.state.x.size()) - 1, last = roll.world.assembly.strips[0].triangles - 1;
+  auto& pairs = std::get<MemoryOf<Cohesion>>(roll.state.memory).pairs;
+  ASSERT_FALSE(pairs.empty());
+  auto pair = pairs.front();
+  pair.vertex = tip - 20, pair.triangle = last, pair.beta = 1;  // the tip's cell on a row some cells before it
+  pairs.push_back(pair);
+  EXPECT_EQ(figures(roll).at("wound_length_m"), before);
+  pair.vertex = 10;  // the tip's cell on the first turn: now all of the tape is held
+  pairs.push_back(pair);
+  EXPECT_GT(figures(roll).at("wound_length_m"), before + 0.08);
+}
 TEST(SettledRoll, StaysWoundWhereItAdheresAndSpringsOpenWhereItDoesNot) {
   // Slip from bonding: counted from each step, the layers creep (cosim/roll/README.md), four Newton iterations a step.
   cosim::RunInput input = roll_input({"gravity=[0,0,0]", "interfaces.0.slip=bonding", "interfaces.1.slip=bonding"});

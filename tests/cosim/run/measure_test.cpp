@@ -92,6 +92,27 @@ TEST(Measure, ASeamIsCoveredWhereTheStripAdheresOnBothSides) {
   across.along = Vec3::UnitX();  // y of the world: the columns have no length along it
   EXPECT_NEAR(strip.value(across), 0, 1e-12);
 }
+/// Rows at steps of 1.9 rad about the y axis of the world, which is x of the left body, through that body's middle.
+TEST(Measure, TurnsAreWhatAdheresAboutAnAxis) {
+  Sealed strip;
+  const Claim turns{.quantity = Quantity::turns, .things = {"tape", "left"}, .along = Vec3::UnitX()};
+  constexpr Real kStep = 1.9, kRadius = 0.012, kPerStep = kStep / (2 * std::numbers::pi);
+  for (int row = 0; row < kRows; ++row)
+    for (int column = 0; column < kColumns; ++column) {
+      const Vec3 on_circle(kRadius * std::cos(row * kStep), 0.01 * (column - 1), -kRadius * std::sin(row * kStep));
+      strip.state.x[static_cast<std::size_t>(strip.vertex(row, column))] = Vec3(0.02, -0.0515, -0.01) + on_circle;
+    }
+  EXPECT_EQ(strip.value(turns), 0) << "nothing adheres";
+  strip.attach_column(0, 0, 0, 1);
+  EXPECT_EQ(strip.value(turns), 0) << "an edge of the strip is no area";
+  for (int column : {1, 2}) strip.attach_column(column, 2, 1, 1);
+  EXPECT_NEAR(strip.value(turns), 2 * kPerStep, 0.26 * kPerStep) << "rows 2 to 4, and a triangle of the row before";
+  for (int column : {1, 2}) strip.attach_column(column, 0, 0, 1);
+  EXPECT_NEAR(strip.value(turns), 4 * kPerStep, 1e-12) << "more than once around";
+  Claim along = turns;
+  along.along = Vec3::UnitY();
+  EXPECT_LT(strip.value(along), 4 * kPerStep - 0.1) << "about another axis";
+}
 TEST(Measure, PiecesAreWhatHangsTogetherByTriangles) {
   Sealed strip;
   const Claim pieces{.quantity = Quantity::pieces, .things = {"tape"}};

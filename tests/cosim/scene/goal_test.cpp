@@ -60,7 +60,7 @@ TEST(Goals, AreRefusedByFileLineKeyAndWhatIsAllowed) {
     std::vector<const char*> says;
   } cases[] = {
       {"joint: \"carton:hinge_right\", above: 1", {"conditions.0.name", "missing"}},
-      {"name: a, above: 1", {"conditions.0", "one of force, height, speed, distance, joint, attached, seam, pieces, wound"}},
+      {"name: a, above: 1", {"conditions.0", "one of force, height, speed, distance, joint, attached, seam, pieces, wound, turns"}},
       {"name: a, joint: \"carton:hinge\", above: 1",
        {"conditions.0.joint = carton:hinge", "allowed: carton:hinge_back, carton:hinge_front"}},
       {"name: a, joint: [x, y], above: 1", {"conditions.0.joint", "names 2 things (allowed: 1)"}},
