@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include "robot/model/convex_hull.hpp"
 #include "tape/core/error.hpp"
@@ -12,17 +13,18 @@ namespace cosim {
 namespace {
 using robot::Vec3;
 constexpr std::size_t kFew = 500;  // triangles
+constexpr double kFlat = 1e-6;     // [m] that corners of a convex mesh may stand out of it
+constexpr double kFilled = 1e-4;   // [m] that one hull of several shapes may stand out of them
 
-tape::TriangleMesh in_link(const robot::TriangleMesh& mesh, const robot::Pose& X_LS) {
-  tape::TriangleMesh out;
-  for (const Vec3& p : mesh.vertices) out.vertices.push_back(X_LS * p);
+tape::TriangleMesh to_tape(const robot::TriangleMesh& mesh) {
+  tape::TriangleMesh out{.vertices = mesh.vertices, .triangles = {}};
   for (const auto& t : mesh.triangles) out.triangles.emplace_back(t[0], t[1], t[2]);
   return out;
 }
 
-bool is_closed(const tape::TriangleMesh& mesh) {
+bool is_closed(const robot::TriangleMesh& mesh) {
   try {
-    check_mesh(mesh, "", true);
+    check_mesh(to_tape(mesh), "", true);
     return true;
   } catch (const tape::InputError&) {
     return false;
@@ -55,20 +57,49 @@ double excess(const std::vector<Vec3>& points, const robot::TriangleMesh& convex
   }
   return most;
 }
+
+/// The hull of what stands for the shapes of a link, where it fills next to nothing between them, as with a capsule drawn as a cylinder and
+/// two spheres.
+std::optional<robot::TriangleMesh> common_hull(const std::vector<robot::TriangleMesh>& shapes,
+                                               const std::vector<robot::TriangleMesh>& parts) {
+  const auto is_convex = [](const robot::TriangleMesh& shape) { return is_closed(shape) && excess(shape.vertices, shape) <= kFlat; };
+  if (!std::ranges::all_of(shapes, is_convex)) return {};
+  std::vector<Vec3> corners;
+  for (const robot::TriangleMesh& part : parts) corners.insert(corners.end(), part.vertices.begin(), part.vertices.end());
+  robot::TriangleMesh hull = robot::convex_hull(corners);
+  const auto on_a_shape = [&](const Vec3& p) {
+    return std::ranges::any_of(shapes, [&](const robot::TriangleMesh& shape) { return excess({p}, shape) <= kFilled; });
+  };
+  for (const auto& t : hull.triangles) {
+    const auto corner = [&](int k) { return hull.vertices[static_cast<std::size_t>(t[k % 3])]; };
+    if (!on_a_shape((corner(0) + corner(1) + corner(2)) / 3)) return {};
+    for (int k = 0; k < 3; ++k)
+      if (!on_a_shape((corner(k) + corner(k + 1)) / 2)) return {};
+  }
+  return hull;
+}
 }  // namespace
 
 Proxy make_proxy(const robot::Link& link) {
   Proxy proxy;
+  std::vector<robot::TriangleMesh> shapes, parts;
   for (const robot::Shape& shape : link.collision) {
-    tape::TriangleMesh part = in_link(shape.mesh, shape.X_LS);
+    robot::TriangleMesh& part = parts.emplace_back(shape.mesh);
     if (part.triangles.size() > kFew || !is_closed(part)) {
-      const robot::TriangleMesh hull = robot::convex_hull(shape.mesh.vertices, robot::hull_cache()), around = surround(hull);
-      proxy.error = std::max(proxy.error, excess(hull.vertices, around));
-      part = in_link(around, shape.X_LS);
+      const robot::TriangleMesh hull = robot::convex_hull(part.vertices, robot::hull_cache());
+      part = surround(hull);
+      proxy.error = std::max(proxy.error, excess(hull.vertices, part));
     }
+    shapes.push_back(shape.mesh);
+    for (Vec3& p : shapes.back().vertices) p = shape.X_LS * p;
+    for (Vec3& p : part.vertices) p = shape.X_LS * p;
+  }
+  if (parts.size() > 1)
+    if (auto hull = common_hull(shapes, parts)) parts = {*std::move(hull)};
+  for (const robot::TriangleMesh& part : parts) {
     const int first = static_cast<int>(proxy.mesh.vertices.size());
     proxy.mesh.vertices.insert(proxy.mesh.vertices.end(), part.vertices.begin(), part.vertices.end());
-    for (const tape::Index3& t : part.triangles) proxy.mesh.triangles.emplace_back(t.array() + first);
+    for (const auto& t : part.triangles) proxy.mesh.triangles.emplace_back(t[0] + first, t[1] + first, t[2] + first);
   }
   return proxy;
 }

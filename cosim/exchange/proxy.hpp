@@ -10,6 +10,7 @@ struct Proxy {
 };
 
 /// Shapes of at most 500 triangles stay as they are if they are closed, hollows and all. Of any other: the convex hull of the points that
-/// lie farthest out in 162 directions, spread over the sphere.
+/// lie farthest out in 162 directions, spread over the sphere. Convex ones become one hull where that of them all stands out of them by 0.1
+/// mm at most: a capsule drawn as a cylinder and two spheres.
 Proxy make_proxy(const robot::Link& link);
 }  // namespace cosim
