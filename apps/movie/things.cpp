@@ -12,13 +12,19 @@
 
 namespace tape::movie {
 namespace {
-struct LinkIndex {
+/// A link, or a frame that is fixed in it.
+struct Place {
   std::size_t robot, link;
+  robot::Pose X_LF = robot::Pose::Identity();
 };
-std::optional<LinkIndex> find_link(const std::string& name, const RecordedMesh& mesh) {
-  for (std::size_t r = 0; r < mesh.robots.size(); ++r)
-    for (std::size_t l = 0; l < mesh.robots[r].links.size(); ++l)
-      if (mesh.robots[r].name + ":" + mesh.robots[r].links[l] == name) return LinkIndex{r, l};
+std::optional<Place> find_link(const std::string& name, const RecordedMesh& mesh) {
+  for (std::size_t r = 0; r < mesh.robots.size(); ++r) {
+    const cosim::RecordedRobot& robot = mesh.robots[r];
+    for (std::size_t l = 0; l < robot.links.size(); ++l)
+      if (robot.name + ":" + robot.links[l] == name) return Place{r, l};
+    for (const robot::Frame& frame : robot.frames)
+      if (robot.name + ":" + frame.name == name) return Place{r, static_cast<std::size_t>(frame.link), frame.X_LF};
+  }
   return {};
 }
 
@@ -33,7 +39,7 @@ std::optional<std::size_t> find_body(const std::string& name, const RecordedMesh
 }
 
 [[noreturn]] void refuse_mount(const std::string& name) {
-  throw InputError("camera.mount = " + name + ": no body and no link robot:link has this name");
+  throw InputError("camera.mount = " + name + ": no body and no link or frame robot:link has this name");
 }
 
 /// @throws InputError if nothing is named so
@@ -86,7 +92,7 @@ Vec3 place_of(const std::string& name, const RecordedMesh& mesh, const RecordedF
 
 Pose frame_of(const std::string& name, const RecordedMesh& mesh, const RecordedFrame& frame) {
   if (const auto body = find_body(name, mesh)) return frame.bodies[*body];
-  if (const auto found = find_link(name, mesh)) return cosim::to_tape(frame.robots[found->robot].links[found->link]);
+  if (const auto found = find_link(name, mesh)) return cosim::to_tape(frame.robots[found->robot].links[found->link] * found->X_LF);
   refuse_mount(name);
 }
 

@@ -23,7 +23,8 @@ struct LookAtSettings {
     f("up", up, "", Range::any(), "direction drawn upwards");
     f("fov", fov, "deg", Range::closed(1, 150), "vertical field of view");
     f("follow", follow, "", Range::any(), "body or strip that the camera moves along with, or tape.tip; it does not turn");
-    f("mount", mount, "", Range::any(), "body, or link as robot:link, that the camera is fixed to: eye, target and up are in its frame");
+    f("mount", mount, "", Range::any(),
+      "body, or link or frame as robot:link, that the camera is fixed to: eye, target and up are in its frame");
   }
 };
 
@@ -39,7 +40,8 @@ struct PinholeSettings {
     calibration.fields(f);
     f("position", position, "m", Range::any(), "position in the world");
     f("rotation", rotation, "rad", Range::any(), "rotation vector from camera axes to world axes");
-    f("mount", mount, "", Range::any(), "body, or link as robot:link, that the camera is fixed to: position and rotation are in its frame");
+    f("mount", mount, "", Range::any(),
+      "body, or link or frame as robot:link, that the camera is fixed to: position and rotation are in its frame");
     f("name", name, "", Range::any(), "of a calibrated camera, in an episode that is recorded");
   }
 };

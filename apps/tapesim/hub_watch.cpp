@@ -42,18 +42,18 @@ score::Hub HubShape::at(const Pose& X_WB) const {
 Mount::Mount(const std::string& name, const World& world, const cosim::CoupledStepper* stepper) : stepper_(stepper) {
   if (name == "world" || name.empty()) return;
   for (int r = 0; stepper && r < stepper->bullet().robots(); ++r) {
-    const std::string& robot = stepper->robots().robots[static_cast<std::size_t>(r)].name;
-    const auto& links = stepper->bullet().model(r).links;
-    for (std::size_t l = 0; l < links.size(); ++l)
-      if (robot + ":" + links[l].name == name) robot_ = r, link_ = static_cast<int>(l);
+    const std::string prefix = stepper->robots().robots[static_cast<std::size_t>(r)].name + ":";
+    if (!name.starts_with(prefix)) continue;
+    if (const auto frame = stepper->bullet().model(r).find_frame(name.substr(prefix.size())))
+      robot_ = r, link_ = frame->link, X_LF_ = frame->X_LF;
   }
   if (robot_ >= 0) return;
   body_ = find_body(world.setup.scene, name);
-  if (body_ < 0) throw InputError("a camera stands on " + name + ": no body and no link robot:link has this name");
+  if (body_ < 0) throw InputError("a camera stands on " + name + ": no body and no link or frame robot:link has this name");
 }
 
 Pose Mount::at(const State& state) const {
-  if (robot_ >= 0) return cosim::to_tape(stepper_->bullet().link_pose(robot_, link_));
+  if (robot_ >= 0) return cosim::to_tape(stepper_->bullet().link_pose(robot_, link_) * X_LF_);
   return body_ < 0 ? Pose{} : state.bodies[static_cast<std::size_t>(body_)].pose;
 }
 

@@ -19,7 +19,7 @@ class HubShape {
   score::Hub shape_;
 };
 
-/// What carries a camera: the world, a body, or a link "robot:link".
+/// What carries a camera: the world, a body, or a link or frame "robot:link".
 class Mount {
  public:
   /// @param stepper  of the robots; may be null where there are none  @throws InputError if nothing is named so
@@ -30,6 +30,7 @@ class Mount {
  private:
   const cosim::CoupledStepper* stepper_;
   int body_ = -1, robot_ = -1, link_ = -1;
+  robot::Pose X_LF_ = robot::Pose::Identity();
 };
 
 /// Notes where the hub, and the link that carries the camera, are at the start and after each step.

@@ -8,7 +8,7 @@
 
 namespace cosim {
 namespace {
-constexpr const char* kFormat = "tape states 6";
+constexpr const char* kFormat = "tape states 7";
 
 constexpr const char* kAbout =
     "SI units: m, s, kg, N, N m, rad. x: positions of the strips' vertices in the world. pose: of each body's frame B in the world, the "
@@ -18,7 +18,7 @@ constexpr const char* kAbout =
     "part: 0 free tape, 1 collar, 2 cluster. robots/NAME/: position, velocity, command, effort of each joint in the order of attribute "
     "joints.NAME (rad, m, "
     "N m, N); links: of each link's frame in the world, in the order of attribute links.NAME, the position, then the quaternion w x y z; "
-    "wrench: of the "
+    "attribute frames.NAME: named frames that are fixed in links, one a line: name, link, pose in it likewise; wrench: of the "
     "tape side on each link, force, then torque about the link's origin, in world axes, mean over the step. time: s at the end of step. "
     "mesh: how often strips had been cut; after the k-th cut the arrays of vertices and triangles go on in meshK/. grip_force: of each "
     "grip in the order of attribute grips, on what it holds, at the end "
@@ -49,11 +49,40 @@ std::string lines(const std::vector<RecordedObject>& objects, std::string Record
   return text;
 }
 
+/// One a line: name, index of the link, position, quaternion w x y z.
+std::string frame_lines(const std::vector<robot::Frame>& frames) {
+  std::ostringstream text;
+  text.precision(17);
+  for (const robot::Frame& frame : frames) {
+    const Eigen::Quaterniond q(frame.X_LF.linear());
+    text << frame.name << ' ' << frame.link << ' ' << frame.X_LF.translation().transpose() << ' ' << q.w() << ' ' << q.vec().transpose()
+         << '\n';
+  }
+  return text.str();
+}
+
 std::vector<std::string> split(const std::string& text) {
   std::istringstream stream(text);
   std::vector<std::string> out;
   for (std::string line; std::getline(stream, line);) out.push_back(line);
   return out;
+}
+/// @throws InputError where a line is damaged
+std::vector<robot::Frame> read_frames(const std::string& text, std::size_t links, const std::string& file) {
+  std::vector<robot::Frame> frames;
+  for (const std::string& line : split(text)) {
+    std::istringstream stream(line);
+    robot::Frame frame;
+    Vec3 p, v;
+    Real w = 0;
+    stream >> frame.name >> frame.link >> p.x() >> p.y() >> p.z() >> w >> v.x() >> v.y() >> v.z();
+    if (!stream || frame.link < 0 || static_cast<std::size_t>(frame.link) >= links)
+      throw InputError(file + ": damaged: \"" + line + "\" is no frame of a robot");
+    frame.X_LF.linear() = Eigen::Quaterniond(w, v.x(), v.y(), v.z()).normalized().toRotationMatrix();
+    frame.X_LF.translation() = p;
+    frames.push_back(frame);
+  }
+  return frames;
 }
 std::string joined_lines(const std::vector<std::string>& all) {
   std::string text;
@@ -128,7 +157,7 @@ RecordedMesh RecordedMesh::of(const World& world, const RobotScene& robots, cons
   for (const Grip& grip : scene.grips) mesh.grips.push_back(grip.name);
   for (const Phase& phase : phases) mesh.phases.push_back(phase.name);
   for (const RobotPart& part : robots.robots) {
-    RecordedRobot& robot = mesh.robots.emplace_back(RecordedRobot{part.name, {}, {}});
+    RecordedRobot& robot = mesh.robots.emplace_back(RecordedRobot{part.name, {}, {}, part.model->frames});
     for (const robot::Joint& joint : part.model->joints) robot.joints.push_back(joint.name);
     for (const robot::Link& link : part.model->links) robot.links.push_back(link.name);
   }
@@ -191,6 +220,7 @@ StateWriter::StateWriter(const std::filesystem::path& name, const RecordedMesh& 
     robots_.push_back(robot.name);
     file_.write_text("joints." + robot.name, joined_lines(robot.joints));
     file_.write_text("links." + robot.name, joined_lines(robot.links));
+    file_.write_text("frames." + robot.name, frame_lines(robot.frames));
   }
   file_.write_text("robots", joined_lines(robots_));
   file_.write_text("names", lines(mesh.objects, &RecordedObject::name));
@@ -281,8 +311,11 @@ void StateReader::read_mesh() {
   mesh.settings = file_.read_text("settings");
   mesh.grips = split(file_.read_text("grips"));
   mesh.phases = split(file_.read_text("phases"));
-  for (const std::string& robot : split(file_.read_text("robots")))
-    mesh.robots.push_back({robot, split(file_.read_text("joints." + robot)), split(file_.read_text("links." + robot))});
+  for (const std::string& robot : split(file_.read_text("robots"))) {
+    const std::vector<std::string> links = split(file_.read_text("links." + robot));
+    mesh.robots.push_back(
+        {robot, split(file_.read_text("joints." + robot)), links, read_frames(file_.read_text("frames." + robot), links.size(), name_)});
+  }
   mesh.objects = read_objects(file_, folder);
   mesh.triangles = unflat<Index3>(file_.read_ints(folder + "triangles"));
   mesh.rest = unflat<Vec2>(file_.read_reals(folder + "rest"));

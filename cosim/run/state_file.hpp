@@ -20,7 +20,8 @@ struct RecordedObject {
 struct RecordedRobot {
   std::string name;
   std::vector<std::string> joints, links;
-  bool operator==(const RecordedRobot&) const = default;
+  std::vector<robot::Frame> frames = {};  ///< of merged links
+  bool operator==(const RecordedRobot& other) const { return name == other.name && joints == other.joints && links == other.links; }
 };
 /// What a recording shows, constant over its frames from cut to cut.
 struct RecordedMesh {

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "apps/movie/things.hpp"
 #include "apps/render/panel.hpp"
 #include "tests/apps/movie/motion.hpp"
 
@@ -160,4 +163,17 @@ TEST(Survey, ColoursOfValuesAndAnOpenCameraTakeTheWholeMotion) {
     survey.add(mesh, next);
     EXPECT_FALSE(survey.stage() == first) << open;
   }
+}
+
+TEST(Things, AFrameThatIsFixedInALinkCarriesACameraAsTheLinkDoes) {
+  RecordedMesh mesh = movie_mesh();
+  mesh.robots = {{"arm", {}, {"base", "hand"}, {{"lens", 1, robot::Pose(Eigen::Translation3d(0, 0, 0.1))}}}};
+  RecordedFrame frame = movie_frame(0, 0, 0);
+  const robot::Pose X_WL = Eigen::Translation3d(1, 2, 3) * Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitX());
+  frame.robots = {{.position = {}, .velocity = {}, .command = {}, .effort = {}, .links = {robot::Pose::Identity(), X_WL}}};
+  const Pose lens = frame_of("arm:lens", mesh, frame), hand = frame_of("arm:hand", mesh, frame);
+  EXPECT_LT((lens.rotation - X_WL.linear()).norm(), 1e-15);
+  EXPECT_LT((hand.position - Vec3(1, 2, 3)).norm(), 1e-15);
+  EXPECT_LT((lens.position - Vec3(1, 2 - 0.1 * std::sin(0.5), 3 + 0.1 * std::cos(0.5))).norm(), 1e-15);
+  EXPECT_THROW(frame_of("arm:elbow", mesh, frame), InputError);
 }

@@ -22,7 +22,11 @@ const RecordedMesh kMesh{.scene = "two triangles",
                          .local = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
                          .strip_vertices = 3,
                          .pictures = "fov: 30\n",
-                         .robots = {{"arm", {"shoulder", "elbow"}, {"base", "upper", "lower"}}, {"stand", {}, {"post"}}},
+                         .robots = {{"arm",
+                                     {"shoulder", "elbow"},
+                                     {"base", "upper", "lower"},
+                                     {{"lens", 2, Eigen::Translation3d(0.1, -0.2, 0.3) * Eigen::AngleAxisd(1.1, Vec3(0.6, 0, -0.8))}}},
+                                    {"stand", {}, {"post"}}},
                          .settings = "{}",
                          .grips = {"pull", "tie"},
                          .phases = {"close", "press"}};
@@ -90,6 +94,12 @@ TEST_F(StateFile, ReadsBackWhatWasWritten) {
   EXPECT_EQ(read.phase, 1);
   EXPECT_EQ(reader.frame(0).phase, -1);
   EXPECT_EQ(reader.mesh().robots, kMesh.robots);
+  ASSERT_EQ(reader.mesh().robots[0].frames.size(), 1u);
+  const robot::Frame &lens = reader.mesh().robots[0].frames[0], &kept = kMesh.robots[0].frames[0];
+  EXPECT_EQ(lens.name, "lens");
+  EXPECT_EQ(lens.link, 2);
+  EXPECT_TRUE(lens.X_LF.isApprox(kept.X_LF, 1e-15));
+  EXPECT_TRUE(reader.mesh().robots[1].frames.empty());
   EXPECT_EQ(reader.mesh().settings, "{}");
   ASSERT_EQ(read.robots.size(), 2u);
   for (std::size_t r = 0; r < 2; ++r) {
