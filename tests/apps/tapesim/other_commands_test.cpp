@@ -4,6 +4,7 @@
 #include <csignal>
 #include <sstream>
 
+#include "cosim/episode/replay_file.hpp"
 #include "cosim/scene/scene_file.hpp"
 #include "tests/apps/tapesim/program.hpp"
 
@@ -222,6 +223,7 @@ TEST_F(Render, MakesStillsAndAVideoFromAnyCameraAndRefusesWhatIsNotThere) {
 TEST(Studies, ThatShipSetWhatTheirScenesHave) {
   for (const auto& entry : std::filesystem::directory_iterator(TAPE_SOURCE_DIR "/data/studies")) {
     const cosim::SceneFile study = cosim::SceneFile::load(entry.path());
+    if (study["replay"]) continue;  // of episodes: below
     const std::string scene = cosim::find_file(entry.path(), "scenes", study["scene"].text()).string();
     std::vector<std::string> always;
     for (const std::string& key : study["set"].keys()) always.push_back(key + "=" + study["set"][key].text());
@@ -232,6 +234,25 @@ TEST(Studies, ThatShipSetWhatTheirScenesHave) {
         const Outcome outcome = tapesim(arguments);
         EXPECT_EQ(outcome.exit_code, 0) << entry.path() << ", " << key << " = " << value << ": " << outcome.err;
       }
+    }
+  }
+}
+
+TEST(Studies, OfEpisodesThatShipFindThem) {
+  const std::string plan = TAPE_SOURCE_DIR "/data/studies/stick_replay.yaml";
+  const cosim::SceneFile study = cosim::SceneFile::load(plan);
+  const auto episodes = study["episodes"].texts();
+  EXPECT_FALSE(episodes.empty());
+  for (const std::string& name : episodes) {
+    const std::string file = cosim::find_file(plan, "episodes", name).string();
+    const cosim::Replay replay = cosim::read_replay(cosim::SceneFile::load(file));
+    EXPECT_TRUE(replay.episode.synthetic()) << file;
+    EXPECT_THAT(cosim::remarks(replay.episode), testing::IsEmpty()) << file;
+    for (const std::string& model : study["models"].texts()) {
+      std::vector<std::string> arguments{"check", replay.scene.string(), "--model", model};
+      for (const std::string& set : replay.overrides) arguments.insert(arguments.end(), {"--set", set});
+      const Outcome outcome = tapesim(arguments);
+      EXPECT_EQ(outcome.exit_code, 0) << file << ", " << model << ": " << outcome.err;
     }
   }
 }
