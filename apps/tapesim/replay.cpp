@@ -213,14 +213,18 @@ void add_replay(CLI::App& app, Action& chosen) {
   command->add_option("--set", arguments->overrides, "set a key of the scene in every run; may be repeated")->allow_extra_args(false);
   command->add_option("--model", arguments->model, "this model alone: coh-f, bond-f, coh-r or bond-r");
   command->add_option("--repeats", arguments->repeats, "runs of each episode with each model")->check(CLI::Range(1, 100));
-  command->add_option("--record", arguments->record, "also writes the run as a synthetic episode, FILE.h5 and FILE.yaml, as run does");
-  command->add_flag("--start", arguments->start,
-                    "no run: pictures of the start as the camera sees it, over the recorded photograph where there is one, to check that "
-                    "all stands where it stood");
-  command->add_flag("--video", arguments->video, "also makes a video of each episode: photographs and models side by side, with landmarks");
-  command->add_option("--still", arguments->stills, "likewise a PNG at this time in s; may be repeated")
-      ->check(CLI::NonNegativeNumber)
-      ->allow_extra_args(false);
+  CLI::Option* record =
+      command->add_option("--record", arguments->record, "also writes the run as a synthetic episode, FILE.h5 and FILE.yaml, as run does");
+  CLI::Option* start = command->add_flag(
+      "--start", arguments->start,
+      "no run: pictures of the start as the camera sees it, over the recorded photograph where there is one, to check that "
+      "all stands where it stood");
+  CLI::Option* video = command->add_flag("--video", arguments->video,
+                                         "also makes a video of each episode: photographs and models side by side, with landmarks");
+  CLI::Option* still = command->add_option("--still", arguments->stills, "likewise a PNG at this time in s; may be repeated")
+                           ->check(CLI::NonNegativeNumber)
+                           ->allow_extra_args(false);
+  start->excludes(video)->excludes(still)->excludes(record);
   command->add_option("--backend", arguments->backend, "auto, cpu or cuda")->check(CLI::IsMember({"auto", "cpu", "cuda"}));
   command->add_option("--threads", arguments->threads, "threads of the CPU back end; 0: all cores")->check(CLI::Range(0, 1024));
   command->callback([arguments, &chosen] { chosen = [arguments] { return replay(*arguments); }; });

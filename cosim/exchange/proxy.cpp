@@ -58,17 +58,29 @@ double excess(const std::vector<Vec3>& points, const robot::TriangleMesh& convex
   return most;
 }
 
+/// Whether a point is outside of a convex surface by no more than a distance [m].
+bool is_near(const Vec3& p, const robot::TriangleMesh& convex, double distance) {
+  return std::ranges::none_of(convex.triangles, [&](const auto& t) {
+    const Vec3& a = convex.vertices[static_cast<std::size_t>(t[0])];
+    const Vec3 n = (convex.vertices[static_cast<std::size_t>(t[1])] - a).cross(convex.vertices[static_cast<std::size_t>(t[2])] - a);
+    const double outside = n.dot(p - a);
+    return outside > 0 && outside * outside > distance * distance * n.squaredNorm();
+  });
+}
+
 /// The hull of what stands for the shapes of a link, where it fills next to nothing between them, as with a capsule drawn as a cylinder and
 /// two spheres.
 std::optional<robot::TriangleMesh> common_hull(const std::vector<robot::TriangleMesh>& shapes,
                                                const std::vector<robot::TriangleMesh>& parts) {
-  const auto is_convex = [](const robot::TriangleMesh& shape) { return is_closed(shape) && excess(shape.vertices, shape) <= kFlat; };
+  const auto is_convex = [](const robot::TriangleMesh& shape) {
+    return is_closed(shape) && std::ranges::all_of(shape.vertices, [&](const Vec3& p) { return is_near(p, shape, kFlat); });
+  };
   if (!std::ranges::all_of(shapes, is_convex)) return {};
   std::vector<Vec3> corners;
   for (const robot::TriangleMesh& part : parts) corners.insert(corners.end(), part.vertices.begin(), part.vertices.end());
   robot::TriangleMesh hull = robot::convex_hull(corners);
   const auto on_a_shape = [&](const Vec3& p) {
-    return std::ranges::any_of(shapes, [&](const robot::TriangleMesh& shape) { return excess({p}, shape) <= kFilled; });
+    return std::ranges::any_of(shapes, [&](const robot::TriangleMesh& shape) { return is_near(p, shape, kFilled); });
   };
   for (const auto& t : hull.triangles) {
     const auto corner = [&](int k) { return hull.vertices[static_cast<std::size_t>(t[k % 3])]; };
