@@ -91,6 +91,7 @@ void read_drives(const Reader& drives, RobotPart& part) {
   const robot::VecX kd = per_joint(drives["kd"], *part.model, none, Range::non_negative(), "N m s/rad or N s/m");
   const robot::VecX effort = per_joint(drives["effort"], *part.model, unlimited, Range::positive(), "N m or N");
   for (Eigen::Index k = 0; k < kp.size(); ++k) part.params.drives.push_back({kp[k], kd[k], effort[k]});
+  part.params.compensate_gravity = drives["compensate_gravity"].flag_or(false);
   if (const Reader target = drives["target"]) part.target = per_joint(target, *part.model, part.start, kPlace, "rad or m");
 }
 

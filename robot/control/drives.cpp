@@ -17,7 +17,11 @@ void require(bool good, const std::string& robot, const std::string& joint, cons
 }  // namespace
 
 Drives::Drives(const RobotModel& model, const std::vector<DriveGains>& gains)
-    : name_(model.name), gains_(gains), commands_(model.joints.size()), saturation_(model.joints.size(), 0) {
+    : name_(model.name),
+      gains_(gains),
+      commands_(model.joints.size()),
+      feed_forward_(VecX::Zero(static_cast<Eigen::Index>(model.joints.size()))),
+      saturation_(model.joints.size(), 0) {
   if (gains.empty()) gains_.resize(model.joints.size());
   require_count(name_, "drive gains", gains_.size(), model.joints.size());
   for (std::size_t k = 0; k < gains_.size(); ++k) {
@@ -39,6 +43,13 @@ void Drives::command(const std::vector<JointCommand>& commands) {
   commands_ = commands;
 }
 
+void Drives::feed_forward(const VecX& effort) {
+  for (Eigen::Index k = 0; k < effort.size(); ++k) {
+    const DriveGains& g = gains_[static_cast<std::size_t>(k)];
+    feed_forward_[k] = g.kp > 0 || g.kd > 0 ? effort[k] : 0;
+  }
+}
+
 DriveLaw Drives::unclamped(const VecX& q, Real h) const {
   const Eigen::Index n = q.size();
   DriveLaw law{VecX::Zero(n), VecX::Zero(n)};
@@ -47,7 +58,8 @@ DriveLaw Drives::unclamped(const VecX& q, Real h) const {
     const JointCommand& c = commands_[static_cast<std::size_t>(k)];
     const Real kp = c.kind == JointCommand::Kind::position ? g.kp : 0;
     const Real kd = c.kind == JointCommand::Kind::effort ? 0 : g.kd;
-    law.force[k] = kp * (c.position - q[k]) + kd * c.velocity + c.effort;
+    const Real ahead = c.kind == JointCommand::Kind::effort ? 0 : feed_forward_[k];
+    law.force[k] = kp * (c.position - q[k]) + kd * c.velocity + c.effort + ahead;
     law.damping[k] = kd + h * kp;
   }
   return law;

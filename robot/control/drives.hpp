@@ -26,7 +26,7 @@ struct DriveLaw {
 };
 
 /// The drives of a robot's joints, implicit in each substep of length h [Tan 2011]: with q' = q + h v' the force of a joint is
-///   f = clamp(kp (target - q - h v') + kd (target velocity - v') + effort, +- limit)
+///   f = clamp(kp (target - q - h v') + kd (target velocity - v') + effort + feed forward, +- limit)
 /// The clamp is an active set: a joint in it gives its limit whatever v' is, and leaves it when its unclamped force is back within.
 /// A joint that mimics another has no drive.
 class Drives {
@@ -38,6 +38,9 @@ class Drives {
   /// @throws InputError if there are not as many as joints, or one is not finite
   void command(const std::vector<JointCommand>& commands);
   const std::vector<JointCommand>& commands() const { return commands_; }
+  /// [nj] N m or N: what drives of kinds other than effort push in this substep beside what is commanded. Joints without gains are left
+  /// out.
+  void feed_forward(const VecX& effort);
 
   DriveLaw law(const VecX& q, Real h) const;
   /// Brings the active set in line with the velocity v' [nj] at the end of a substep from q; true if it changed.
@@ -58,6 +61,7 @@ class Drives {
   std::string name_;
   std::vector<DriveGains> gains_;  // effort: the smaller of both limits
   std::vector<JointCommand> commands_;
+  VecX feed_forward_;  // [nj]
   std::vector<int> saturation_;
 };
 

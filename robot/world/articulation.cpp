@@ -237,6 +237,24 @@ Articulation::Vec6 Articulation::weight(const Vec3& gravity) const {
   return weight;
 }
 
+VecX Articulation::joint_weight(const Vec3& gravity) const {
+  std::vector<Real> mass;    // of a link and all beyond it
+  std::vector<Vec3> moment;  // of these masses about the world's origin
+  for (std::size_t link = 0; link < model_->links.size(); ++link) {
+    const Inertial& i = model_->links[link].inertial;
+    mass.push_back(i.mass), moment.push_back(i.mass * (X_WL_[link] * i.com));
+  }
+  VecX out(joints());
+  for (Eigen::Index k = joints() - 1; k >= 0; --k) {
+    const Joint& joint = model_->joints[static_cast<std::size_t>(k)];
+    const std::size_t child = static_cast<std::size_t>(k) + 1, parent = static_cast<std::size_t>(joint.parent);
+    const Vec3 axis = X_WL_[child].linear() * joint.axis, arm = moment[child] - mass[child] * X_WL_[child].translation();
+    out[k] = joint.type == JointType::prismatic ? axis.dot(mass[child] * gravity) : axis.dot(arm.cross(gravity));
+    mass[parent] += mass[child], moment[parent] += moment[child];
+  }
+  return out;
+}
+
 VecX Articulation::acceleration(const VecX& v, const VecX& tau, const Vec3& gravity) {
   set_v(v);
   body_->clearForcesAndTorques();

@@ -35,6 +35,8 @@ class Articulation {
   MatX to_bullet_velocity() const;
   /// Force [N] and torque [N m] of the weight about the base frame's origin.
   Eigen::Matrix<Real, 6, 1> weight(const Vec3& gravity) const;
+  /// [nj] N m or N: of the weight of all links beyond each joint, in its direction.
+  VecX joint_weight(const Vec3& gravity) const;
   /// dv/dt at this configuration if the velocity were v, under the weight, tau [dof], and nothing else.
   VecX acceleration(const VecX& v, const VecX& tau, const Vec3& gravity);
 

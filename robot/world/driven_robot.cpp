@@ -9,6 +9,7 @@ DrivenRobot::DrivenRobot(int index, std::shared_ptr<const RobotModel> model, con
       body_(index, model, params.X_WB, params.fixed_base),
       drives_(*model, params.drives),
       joint_map_(joint_map(*model)),
+      compensate_gravity_(params.compensate_gravity),
       viscous_(body_.joints()) {
   for (Eigen::Index k = 0; k < body_.joints(); ++k) viscous_[k] = model->joints[static_cast<std::size_t>(k)].damping;
   motions_ = MatX::Identity(body_.dof(), body_.base_dof() + joint_map_.map.cols());
@@ -79,6 +80,11 @@ void DrivenRobot::begin(const VecX& tau, const Vec3& gravity, Real h) {
   origin_ = body_.X_WL(0).translation();
   weight_ = body_.weight(gravity);
   M_ = body_.mass_matrix();
+  if (compensate_gravity_) {
+    VecX carried = VecX::Zero(body_.joints());
+    carried(joint_map_.independent) = -joint_map_.map.transpose() * body_.joint_weight(gravity);
+    drives_.feed_forward(carried);
+  }
   for (const auto& constraint : constraints_)
     if (constraint->getConstraintType() == MULTIBODY_CONSTRAINT_1DOF_JOINT_MOTOR)
       constraint->setMaxAppliedImpulse(h * body_.model().joints[static_cast<std::size_t>(constraint->getLinkA())].friction);

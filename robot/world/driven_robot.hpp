@@ -52,6 +52,7 @@ class DrivenRobot {
   Articulation body_;
   Drives drives_;
   JointMap joint_map_;
+  bool compensate_gravity_;
   VecX viscous_;  // [nj]
   MatX motions_;
   std::vector<std::unique_ptr<btMultiBodyConstraint>> constraints_;

@@ -16,6 +16,7 @@ struct RobotParams {
   Pose X_WB = Pose::Identity();         ///< of the base at the start
   bool fixed_base = true;               ///< false: the base is free
   std::vector<DriveGains> drives = {};  ///< [nj], or empty: none
+  bool compensate_gravity = false;      ///< position and velocity drives also push what carries the robot's own links (README.md)
   Real friction = 0.5;                  ///< of every link; of a pair, the geometric mean of both
 };
 

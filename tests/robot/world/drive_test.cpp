@@ -79,6 +79,51 @@ TEST(Drive, TheEffortLimitBites) {
   EXPECT_EQ(world.saturation(robot), std::vector<int>{0});
 }
 
+namespace {
+/// [J] of the links' weight.
+Real potential(World& world, int robot, const VecX& q) {
+  world.set_state(robot, {.q = q, .v = VecX::Zero(q.size())});
+  Real sum = 0;
+  for (int link = 0; link <= static_cast<int>(q.size()); ++link) {
+    const Inertial& i = world.model(robot).links[static_cast<std::size_t>(link)].inertial;
+    sum += i.mass * 9.81 * (world.link_pose(robot, link) * i.com).z();
+  }
+  return sum;
+}
+}  // namespace
+
+TEST(Drive, GravityCompensationPushesTheSlopeOfThePotentialAndHoldsARobotWhereItIs) {
+  RobotModel model = tree();
+  model.joints[4].mimic = Mimic{.joint = 2, .multiplier = -0.7, .offset = 0.1};
+  World world;
+  const int robot = world.add_robot(std::make_shared<RobotModel>(model),
+                                    {.drives = std::vector<DriveGains>(5, {.kp = 200, .kd = 10}), .compensate_gravity = true});
+  VecX q = odd_numbers(5, 0.6);
+  q[4] = 0.1 - 0.7 * q[2];
+  constexpr Real kStep = 1e-5;
+  for (int k = 0; k < 4; ++k) {
+    const VecX u = VecX::Unit(5, k) + (k == 2 ? -0.7 : 0) * VecX::Unit(5, 4);
+    const Real slope = (potential(world, robot, q + kStep * u) - potential(world, robot, q - kStep * u)) / (2 * kStep);
+    world.set_state(robot, {.q = q, .v = VecX::Zero(5)});
+    world.command(robot, hold(q));
+    world.step(1e-3);
+    EXPECT_NEAR(world.drive_effort(robot)[k], slope, 1e-7) << k;
+  }
+  for (int i = 0; i < 20; ++i) world.step(0.01);
+  EXPECT_LT((world.state(robot).q - q).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(Drive, GravityCompensationLeavesJointsWithoutGainsAndEffortsAlone) {
+  for (const DriveGains& gains : {DriveGains{}, DriveGains{.kp = 200, .kd = 10}}) {
+    World world;
+    const int robot = world.add_robot(kTree, {.drives = std::vector<DriveGains>(5, gains), .compensate_gravity = true});
+    if (gains.kp > 0) world.command(robot, std::vector<JointCommand>(5));
+    world.step(1e-3);
+    EXPECT_EQ(world.drive_effort(robot).norm(), 0);
+    EXPECT_GT(world.state(robot).v.norm(), 1e-3);
+  }
+}
+
 TEST(Drive, OneSaturatedJointDoesNotChangeTheLawOfTheOthers) {
   World world({.gravity = Vec3::Zero()});
   std::vector<DriveGains> gains = kStiff;
