@@ -54,7 +54,11 @@ StudyRun run_one(const Study& study, const std::vector<std::string>& values, con
   const cosim::RunLog log = simulate(loaded.world, *stepper, state, options);
   result.take(summarize(loaded.world, log, {}));
   if (log.interrupted) return result;
-  if (result.measurable()) result.measured = measure(study.reference, loaded.world, log);
+  try {
+    if (result.measurable()) result.measured = measure(study.reference, loaded.world, log);
+  } catch (const NothingMeasured& nothing) {
+    result.failure = nothing.what();
+  }
   store.keep(key, result);
   return result;
 }

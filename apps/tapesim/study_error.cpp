@@ -73,7 +73,7 @@ Real kendall_error(const World& world, const cosim::RunLog& log, Real angle) {
   const Real exact = film.width * report::peel_force(first.area.toughness, angle, film.membrane_modulus * film.thickness);
   for (const auto& [name, value] : cosim::measure_figures({"peel_force"}, world, log))
     if (name == "peel_force_mean_N") return std::abs(value / exact - 1);
-  throw InputError("kendall: nothing was peeled");
+  throw NothingMeasured("nothing was peeled");
 }
 
 /// The hub of the first roll at equal times over the run.
@@ -103,6 +103,8 @@ Real figure_value(const std::string& key, const World& world, const cosim::RunLo
     if (name == key) return value;
     known += (known.empty() ? "" : ", ") + name;
   }
+  for (const std::string& name : names)
+    if (key.starts_with(name)) throw NothingMeasured(key + ": the run has no such value");
   throw InputError("measure = " + key + ": the scene has no such figure; it has state, hub_path, " + known);
 }
 }  // namespace

@@ -13,8 +13,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using robot::RobotState;
 
-constexpr double kBare = 0.5;   // of the bare robot's inertia, that limited drives leave at least
-constexpr double kHeavy = 1e6;  // times the inertia: a link that feels nothing
+constexpr double kBare = 0.5;            // of the bare robot's inertia, that limited drives leave at least
+constexpr double kCommandPeriod = 0.01;  // [s] at most from one command to the next
+constexpr double kHeavy = 1e6;           // times the inertia: a link that feels nothing
 /// [N/m] of the hold that closes the gap between the two worlds, as stiff as that of driven bodies.
 constexpr double kClosing = 1e9;
 
@@ -168,7 +169,7 @@ tape::StepReport CoupledStepper::step_both(tape::State& state) {
   report_ = {};
   restore(state);
   see_to_pinching(state);
-  command(state);
+  follow_script(state);
   const robot::Snapshot start = bullet_.save();
   tape::State next = state;
   tape::StepReport report = robots_.exchange.schedule == Schedule::iterated ? step_in_turns(next, dt, start) : step_once(next, dt, start);
@@ -224,15 +225,13 @@ void CoupledStepper::restore(const tape::State& state) {
   }
 }
 
-/// Tells the drives where to be at the end of the step.
-void CoupledStepper::command(const tape::State& state) {
+void CoupledStepper::follow_script(const tape::State& state) {
   if (scripts_.empty() || events_ != state.events) {
     scripts_.clear();
     for (const RobotPart& robot : robots_.robots) scripts_.emplace_back(robot, state.events);
     events_ = state.events;
   }
   time_ = (state.step + 1) * world_.setup.scene.time.dt;
-  for (std::size_t r = 0; r < scripts_.size(); ++r) bullet_.command(static_cast<int>(r), scripts_[r].commands_at(time_));
 }
 
 /// Pairs that may have tape between them touch on the tape side, all others in Bullet.
@@ -247,10 +246,20 @@ void CoupledStepper::see_to_pinching(const tape::State& state) {
   report_.pinching = static_cast<int>(pinched_.size());
 }
 
+/// The drives are told where to be at the end of the step; where that is far off, at the end of each of its parts.
 void CoupledStepper::advance_bullet(const robot::Snapshot& start, double dt, const std::vector<robot::VecX>& tau) {
+  constexpr double kRoundOff = 1e-9;
   const tape::Stopwatch watch(report_.bullet_ms);
   bullet_.restore(start);
-  bullet_.step(dt, tau);
+  const int parts = static_cast<int>(std::ceil(dt / kCommandPeriod - kRoundOff));
+  int told = 0;
+  bullet_.step(dt, tau, [&](double end) {
+    const int part = static_cast<int>(std::ceil(parts * end / dt - kRoundOff));
+    if (part == told) return;
+    told = part;
+    const double time = time_ - dt * (parts - part) / parts;
+    for (std::size_t r = 0; r < scripts_.size(); ++r) bullet_.command(static_cast<int>(r), scripts_[r].commands_at(time));
+  });
 }
 
 /// Sets the joints to where they are told to be at the end of the step.

@@ -63,7 +63,7 @@ class CoupledStepper final : public tape::Stepper {
   std::vector<robot::RobotState> robot_states() const;
   std::vector<robot::Vec3> momenta() const;
   void restore(const tape::State& state);
-  void command(const tape::State& state);
+  void follow_script(const tape::State& state);
   void see_to_pinching(const tape::State& state);
   void advance_bullet(const robot::Snapshot& start, double dt, const std::vector<robot::VecX>& tau);
   void pose_bullet(double dt);
@@ -81,7 +81,7 @@ class CoupledStepper final : public tape::Stepper {
   Pinching pinching_;
   std::vector<tape::Index2> pinched_;  // pairs of bodies, in this step
   std::vector<Part> parts_;
-  double time_ = 0;                                // [s] that the drives are told of
+  double time_ = 0;                                // [s] of the end of the step
   std::vector<double> events_;                     // that scripts_ know of
   std::vector<robot::VecX> load_;                  // [robots][dof] that the tape side exerted in the last step, zero at the start
   std::vector<tape::ArticulationReport> exerted_;  // in the last step

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robot/control/clamped_force.hpp"
+
 namespace robot {
 namespace {
 void require_count(const std::string& robot, const char* what, std::size_t given, std::size_t joints) {
@@ -77,17 +79,11 @@ DriveLaw Drives::law(const VecX& q, Real h) const {
 }
 
 bool Drives::update_saturation(const VecX& q, const VecX& v, Real h, bool release) {
-  constexpr Real kTie = 1e-12;  // relative: a force at its limit to round-off stays where it is
   const DriveLaw law = unclamped(q, h);
   bool changed = false;
   for (Eigen::Index k = 0; k < q.size(); ++k) {
     const std::size_t j = static_cast<std::size_t>(k);
-    const Real force = law.force[k] - law.damping[k] * v[k], limit = gains_[j].effort;
-    int side = saturation_[j];
-    if (side == 0 && std::abs(force) > limit * (1 + kTie)) side = force > 0 ? 1 : -1;
-    if (side != 0 && release && side * force < limit * (1 - kTie)) side = 0;
-    changed |= side != saturation_[j];
-    saturation_[j] = side;
+    changed |= update_side(saturation_[j], law.force[k] - law.damping[k] * v[k], gains_[j].effort, release);
   }
   return changed;
 }
@@ -111,7 +107,27 @@ VecX Drives::damping() const {
   return kd;
 }
 
-MatX held_force_response(const MatX& M, const MatX& stiffness, const MatX& damping, Real h, int count) {
+namespace {
+/// Coordinates in groups that M couples, as the branches of a robot on a fixed base are not.
+std::vector<std::vector<int>> coupled_groups(const MatX& M) {
+  std::vector<std::vector<int>> groups;
+  std::vector<bool> grouped(static_cast<std::size_t>(M.rows()), false);
+  for (int first = 0; first < M.rows(); ++first) {
+    if (grouped[static_cast<std::size_t>(first)]) continue;
+    grouped[static_cast<std::size_t>(first)] = true;
+    std::vector<int> group = {first};
+    for (std::size_t i = 0; i < group.size(); ++i)
+      for (int k = first + 1; k < M.rows(); ++k) {
+        if (grouped[static_cast<std::size_t>(k)] || M(group[i], k) == 0) continue;
+        grouped[static_cast<std::size_t>(k)] = true;
+        group.push_back(k);
+      }
+    groups.push_back(std::move(group));
+  }
+  return groups;
+}
+
+MatX group_response(const MatX& M, const MatX& stiffness, const MatX& damping, Real h, int count) {
   const Eigen::LLT<MatX> lhs(M + h * damping + h * h * stiffness);
   MatX dx = MatX::Zero(M.rows(), M.cols()), dv = dx;
   for (int s = 0; s < count; ++s) {
@@ -119,5 +135,13 @@ MatX held_force_response(const MatX& M, const MatX& stiffness, const MatX& dampi
     dx += h * dv;
   }
   return (dx + dx.transpose()) / 2;
+}
+}  // namespace
+
+MatX held_force_response(const MatX& M, const MatX& stiffness, const MatX& damping, Real h, int count) {
+  MatX response = MatX::Zero(M.rows(), M.cols());
+  for (const std::vector<int>& g : coupled_groups(M + stiffness + damping))
+    response(g, g) = group_response(M(g, g), stiffness(g, g), damping(g, g), h, count);
+  return response;
 }
 }  // namespace robot

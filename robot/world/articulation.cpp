@@ -198,13 +198,15 @@ Articulation::Mat6 Articulation::spatial_inertia(int link) const {
 MatX Articulation::mass_matrix() const {
   const Eigen::Index b = base_dof();
   std::vector<Mat6> composite;
+  std::vector<Vec6> motion;
   for (int link = 0; link <= joints(); ++link) composite.push_back(spatial_inertia(link));
+  for (int k = 0; k < joints(); ++k) motion.push_back(joint_motion(k));
   MatX M = MatX::Zero(dof(), dof());
   for (int k = static_cast<int>(joints()) - 1; k >= 0; --k) {
     const std::size_t link = static_cast<std::size_t>(k) + 1;
-    const Vec6 momentum = composite[link] * joint_motion(k);
+    const Vec6 momentum = composite[link] * motion[link - 1];
     for (int j = k; j >= 0; j = model_->joints[static_cast<std::size_t>(j)].parent - 1)
-      M(b + j, b + k) = M(b + k, b + j) = joint_motion(j).dot(momentum);
+      M(b + j, b + k) = M(b + k, b + j) = motion[static_cast<std::size_t>(j)].dot(momentum);
     if (b > 0) {
       M.block<6, 1>(0, b + k) = momentum;
       M.block<1, 6>(b + k, 0) = momentum.transpose();

@@ -1,6 +1,5 @@
 #include "robot/world/driven_robot.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
 namespace robot {
@@ -8,6 +7,7 @@ DrivenRobot::DrivenRobot(int index, std::shared_ptr<const RobotModel> model, con
     : drive_impulse(VecX::Zero(static_cast<Eigen::Index>(model->joints.size()))),
       body_(index, model, params.X_WB, params.fixed_base),
       drives_(*model, params.drives),
+      friction_(*model),
       joint_map_(joint_map(*model)),
       compensate_gravity_(params.compensate_gravity),
       viscous_(body_.joints()) {
@@ -15,16 +15,15 @@ DrivenRobot::DrivenRobot(int index, std::shared_ptr<const RobotModel> model, con
   motions_ = MatX::Identity(body_.dof(), body_.base_dof() + joint_map_.map.cols());
   motions_.bottomRightCorner(joint_map_.map.rows(), joint_map_.map.cols()) = joint_map_.map;
   body_.bullet().setUserPointer(this);
-  add_constraints();
+  add_limits();
   body_.set_q(follow(VecX::Zero(body_.joints())));
   body_.refresh();
   for (int link = 0; link <= body_.joints(); ++link) set_friction(link, params.friction);
 }
 
-void DrivenRobot::add_constraints() {
+void DrivenRobot::add_limits() {
   for (int k = 0; k < body_.joints(); ++k) {
     const Joint& joint = body_.model().joints[static_cast<std::size_t>(k)];
-    if (joint.friction > 0) constraints_.push_back(std::make_unique<btMultiBodyJointMotor>(&body_.bullet(), k, 0, 0));
     if (std::isinf(joint.lower) && std::isinf(joint.upper)) continue;
     constraints_.push_back(std::make_unique<btMultiBodyJointLimitConstraint>(&body_.bullet(), k, joint.lower, joint.upper));
     constraints_.back()->setMaxAppliedImpulse(BT_LARGE_FLOAT);
@@ -35,6 +34,18 @@ MatX DrivenRobot::on_joints(const VecX& diagonal) const {
   VecX all = VecX::Zero(body_.dof());
   all.tail(diagonal.size()) = diagonal;
   return all.asDiagonal();
+}
+
+/// T^T A T: what the motions that mimicking joints leave see of A.
+MatX DrivenRobot::independent(const MatX& A) const { return motions_.cols() == motions_.rows() ? A : motions_.transpose() * A * motions_; }
+
+/// Change of velocity by an impulse, both [dof].
+VecX DrivenRobot::give(const VecX& impulse) const { return motions_ * K_.solve(motions_.transpose() * impulse); }
+
+const MatX& DrivenRobot::impulse_response() {
+  if (impulse_response_.size() > 0) return impulse_response_;
+  const MatX BT = body_.to_bullet_velocity() * motions_;
+  return impulse_response_ = BT * K_.solve(BT.transpose());
 }
 
 VecX DrivenRobot::follow_velocity(const VecX& v) const {
@@ -50,7 +61,8 @@ void DrivenRobot::save(std::vector<Real>& numbers) const {
   body_.save(numbers);
   for (const JointCommand& c : drives_.commands())
     numbers.insert(numbers.end(), {static_cast<Real>(c.kind), c.position, c.velocity, c.effort});
-  for (const int side : drives_.saturation()) numbers.push_back(side);
+  for (const std::vector<int>* active : {&drives_.saturation(), &friction_.slipping()})
+    numbers.insert(numbers.end(), active->begin(), active->end());
 }
 
 void DrivenRobot::restore(const Real*& n) {
@@ -59,15 +71,18 @@ void DrivenRobot::restore(const Real*& n) {
   for (Eigen::Index k = 0; k < body_.joints(); ++k, n += 4)
     commands.push_back({static_cast<JointCommand::Kind>(static_cast<int>(n[0])), n[1], n[2], n[3]});
   drives_.command(commands);
-  std::vector<int> saturation;
-  for (Eigen::Index k = 0; k < body_.joints(); ++k) saturation.push_back(static_cast<int>(*n++));
-  drives_.set_saturation(saturation);
+  const auto active = [&] {
+    std::vector<int> set;
+    for (Eigen::Index k = 0; k < body_.joints(); ++k) set.push_back(static_cast<int>(*n++));
+    return set;
+  };
+  drives_.set_saturation(active());
+  friction_.set_slipping(active());
 }
 
 MatX DrivenRobot::response(Real h, int count, bool drives) const {
   const MatX stiffness = on_joints(drives * drives_.stiffness()), damping = on_joints(drives * drives_.damping() + viscous_);
-  const auto reduced = [&](const MatX& A) -> MatX { return motions_.transpose() * A * motions_; };
-  const MatX S = held_force_response(reduced(body_.mass_matrix()), reduced(stiffness), reduced(damping), h, count);
+  const MatX S = held_force_response(independent(body_.mass_matrix()), independent(stiffness), independent(damping), h, count);
   return motions_ * S * motions_.transpose();
 }
 
@@ -85,39 +100,38 @@ void DrivenRobot::begin(const VecX& tau, const Vec3& gravity, Real h) {
     carried(joint_map_.independent) = -joint_map_.map.transpose() * body_.joint_weight(gravity);
     drives_.feed_forward(carried);
   }
-  for (const auto& constraint : constraints_)
-    if (constraint->getConstraintType() == MULTIBODY_CONSTRAINT_1DOF_JOINT_MOTOR)
-      constraint->setMaxAppliedImpulse(h * body_.model().joints[static_cast<std::size_t>(constraint->getLinkA())].friction);
+  friction_.begin(M_.diagonal().tail(body_.joints()), h);
 }
 
 void DrivenRobot::move_freely() {
   constexpr int kMidpoints = 3;  // evaluations of the Coriolis forces at the mean velocity: an error of (h omega)^3
   law_ = drives_.law(q_, h_);
-  const MatX K = M_ + h_ * on_joints(law_.damping + viscous_);
-  give_ = motions_ * MatX(motions_.transpose() * K * motions_).llt().solve(motions_.transpose());
-  const MatX B = body_.to_bullet_velocity();
-  impulse_response_ = B * give_ * B.transpose();
+  const DriveLaw friction = friction_.law();
+  K_.compute(independent(M_ + h_ * on_joints(law_.damping + friction.damping + viscous_)));
+  impulse_response_.resize(0, 0);
 
   VecX drive = VecX::Zero(body_.dof());
-  drive.tail(body_.joints()) = h_ * law_.force;
+  drive.tail(body_.joints()) = h_ * (law_.force + friction.force);
   v_free_ = v_start_;
   for (int i = 0; i < kMidpoints; ++i) {
     const VecX a = body_.acceleration((v_start_ + v_free_) / 2, tau_, gravity_);
-    v_free_ = give_ * (M_ * (v_start_ + h_ * a) + drive);
+    v_free_ = give(M_ * (v_start_ + h_ * a) + drive);
   }
   body_.set_v(v_free_);
 }
 
-bool DrivenRobot::update_saturation(bool release) {
+bool DrivenRobot::update_active_sets(bool release) {
   v_end_ = body_.v();
-  return drives_.update_saturation(q_, v_end_.tail(body_.joints()), h_, release);
+  const VecX joints = v_end_.tail(body_.joints());
+  const bool driven = drives_.update_saturation(q_, joints, h_, release), slipping = friction_.update(joints, release);
+  return driven || slipping;
 }
 
 void DrivenRobot::set_drift() {
   if (body_.base_dof() == 0) return;
   const VecX a = body_.acceleration((v_start_ + v_end_) / 2, VecX::Zero(body_.dof()), Vec3::Zero());
   VecX v = v_end_;
-  v.head<6>() -= h_ / 2 * (give_ * (M_ * a)).head<6>();
+  v.head<6>() -= h_ / 2 * give(M_ * a).head<6>();
   body_.set_v(v);
 }
 

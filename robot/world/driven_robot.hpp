@@ -1,7 +1,10 @@
 #pragma once
+#include <Eigen/Cholesky>
+
 #include "robot/control/drives.hpp"
 #include "robot/kinematics/joint_map.hpp"
 #include "robot/world/articulation.hpp"
+#include "robot/world/dry_friction.hpp"
 #include "robot/world/world.hpp"
 
 namespace robot {
@@ -25,19 +28,20 @@ class DrivenRobot {
   /// d q_end / d tau over count substeps.
   MatX response(Real h, int count, bool drives) const;
 
-  /// Configuration, velocity, commands and active set as numbers, to the bit.
+  /// Configuration, velocity, commands and active sets as numbers, to the bit.
   void save(std::vector<Real>& numbers) const;
   void restore(const Real*& numbers);
-  std::size_t saved_size() const { return 13 + 7 * static_cast<std::size_t>(body_.joints()); }
+  std::size_t saved_size() const { return 13 + 8 * static_cast<std::size_t>(body_.joints()); }
 
-  /// At the start of a substep: what stays the same while contacts are sought and drives enter or leave their limits.
+  /// At the start of a substep: what stays the same while contacts are sought, drives enter or leave their limits and joints slip or stick.
   void begin(const VecX& tau, const Vec3& gravity, Real h);
-  /// Sets the velocity that drives, external forces, weight and Coriolis forces lead to, before contacts, limits and Coulomb friction.
+  /// Sets the velocity that drives, friction of the joints, external forces, weight and Coriolis forces lead to, before contacts and
+  /// limits.
   void move_freely();
-  /// [6 + nj x 6 + nj] change of Bullet's velocity per impulse, the drives giving way as they do within a substep.
-  const MatX& impulse_response() const { return impulse_response_; }
-  /// After contacts and the like; true if a drive must enter or leave its limit, and the substep be made again.
-  bool update_saturation(bool release);
+  /// [6 + nj x 6 + nj] change of Bullet's velocity per impulse, drives and friction of the joints giving way as they do within a substep.
+  const MatX& impulse_response();
+  /// After contacts and the like; true if a drive must enter or leave its limit, or a joint slip or stick, and the substep be made again.
+  bool update_active_sets(bool release);
   /// Sets the velocity with which the configuration moves: a free base turns as the Coriolis forces make it in mid substep.
   void set_drift();
   /// After the configuration has changed: gives a free base the momentum that it has got (README.md), books the drives' impulse.
@@ -47,10 +51,13 @@ class DrivenRobot {
   VecX drive_impulse;
 
  private:
-  void add_constraints();
+  void add_limits();
   MatX on_joints(const VecX& diagonal) const;
+  MatX independent(const MatX& A) const;
+  VecX give(const VecX& impulse) const;
   Articulation body_;
   Drives drives_;
+  DryFriction friction_;
   JointMap joint_map_;
   bool compensate_gravity_;
   VecX viscous_;  // [nj]
@@ -63,7 +70,9 @@ class DrivenRobot {
   VecX tau_, q_, v_start_, v_free_, v_end_;
   Eigen::Matrix<Real, 6, 1> weight_ = Eigen::Matrix<Real, 6, 1>::Zero();
   Vec3 origin_ = Vec3::Zero();  // of the base's frame at the start
-  DriveLaw law_;
-  MatX M_, give_, impulse_response_;  // give: velocity per impulse, [dof x dof]
+  DriveLaw law_;                // of the drives
+  MatX M_;
+  Eigen::LLT<MatX> K_;     // of the independent motions
+  MatX impulse_response_;  // empty until asked for
 };
 }  // namespace robot

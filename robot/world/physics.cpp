@@ -100,7 +100,7 @@ class Physics::BulletWorld : public btMultiBodyDynamicsWorld {
 
   /// Bullet leaves out the constraints of articulations where it does not split islands, and splitting orders them by history.
   void solveConstraints(btContactSolverInfo& info) override {
-    constexpr int kReleasing = 8;  // passes in which drives may leave their limits; after them they only enter, which ends
+    constexpr int kReleasing = 8;  // passes in which drives may leave their limits and joints stick; after them neither, which ends
     forwardKinematics();
     bool again = true;
     for (int pass = 0; again; ++pass) {
@@ -108,7 +108,7 @@ class Physics::BulletWorld : public btMultiBodyDynamicsWorld {
       clearMultiBodyConstraintForces();
       for (const auto& robot : physics_.robots_) robot->move_freely();
       solve(info);
-      for (const auto& robot : physics_.robots_) again |= robot->update_saturation(pass < kReleasing);
+      for (const auto& robot : physics_.robots_) again |= robot->update_active_sets(pass < kReleasing);
     }
     for (const auto& robot : physics_.robots_) robot->set_drift();
   }

@@ -89,7 +89,7 @@ void World::set_contact(int robot_a, int link_a, int robot_b, int link_b, bool o
     impl_->physics.apart.insert(pair);
 }
 
-void World::step(Real dt, const std::vector<VecX>& tau) {
+void World::step(Real dt, const std::vector<VecX>& tau, const std::function<void(Real)>& before) {
   require(dt > 0 && std::isfinite(dt), "dt", dt, "> 0 s");
   if (!tau.empty() && static_cast<int>(tau.size()) != robots()) throw InputError("world: a step needs one external force for each robot");
   std::vector<VecX> forces;
@@ -102,7 +102,10 @@ void World::step(Real dt, const std::vector<VecX>& tau) {
   }
   const int count = substeps(dt, impl_->params.substep);
   const Real h = dt / count;
-  for (int s = 0; s < count; ++s) impl_->physics.substep(h, forces);
+  for (int s = 0; s < count; ++s) {
+    if (before) before((s + 1) * h);
+    impl_->physics.substep(h, forces);
+  }
   impl_->last_dt = dt;
   impl_->contacts = impl_->physics.contacts(h);
 }

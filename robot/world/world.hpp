@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <memory>
 
 #include "robot/control/drives.hpp"
@@ -68,8 +69,9 @@ class World {
   bool may_touch(int robot_a, int link_a, int robot_b, int link_b) const;
 
   /// Advances by dt [s] in equal substeps.
-  /// @param tau  [robots] external force on each [dof], held over dt; an empty one, or an empty list, is none
-  void step(Real dt, const std::vector<VecX>& tau = {});
+  /// @param tau     [robots] external force on each [dof], held over dt; an empty one, or an empty list, is none
+  /// @param before  called before each substep with the time [s] since the start at which it ends: it may command
+  void step(Real dt, const std::vector<VecX>& tau = {}, const std::function<void(Real)>& before = {});
   Snapshot save() const;
   /// What is reported of the last step (drive_effort, contacts) is not kept.
   void restore(const Snapshot& snapshot);

@@ -146,6 +146,15 @@ TEST_F(StudyCommand, RunsAreComparedWithTheFinestOfTheirKind) {
     EXPECT_EQ(line.ends_with(",finest"), finest) << line;
   }
 }
+TEST_F(StudyCommand, ARunThatLeavesNothingToMeasureIsARowThatSaysSo) {
+  const std::string study = folder.file(
+      "study.yaml", "study: early\nscene: " TAPE_SOURCE_DIR
+                    "/data/scenes/peel_area.yaml\ngrid: {time.duration: [0.01, 0.02]}\n"
+                    "set: {strip.cells_across: 2, strip.cell_length: 0.004}\nagainst: {closed_form: kendall, angle_deg: 180}\n");
+  const Outcome outcome = tapesim({"study", study, "--out", (folder / "out").string()});
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+  EXPECT_THAT(read(folder / "out" / "study.csv"), ContainsRegex("\n1,0.01,,.*nothing was peeled\n2,0.02,,.*nothing was peeled\n"));
+}
 TEST_F(StudyCommand, AMistakeInAnyRunIsFoundBeforeTheFirst) {
   const std::string study = folder.file(
       "study.yaml", "study: late\nscene: small.yaml\ngrid: {time.dt: [0.05, -1]}\nagainst: {finest: true}\nset: {time.duration: 1000}\n");

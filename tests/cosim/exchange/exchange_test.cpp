@@ -79,6 +79,22 @@ TEST(Exchange, BulletAloneGoesItsWayWhereNoTapeIs) {
   }
   EXPECT_GT(alone.state(0).q[0], 0.05);
 }
+TEST(Exchange, DrivesAreToldWhereToBeAHundredTimesASecondInLongerStepsToo) {
+  RobotScene far = two_links(Vec3(0.05, 0, 0.3), {{.kp = 0.1, .kd = 1e-4}});
+  far.robots[0].motions = {{[](const robot::VecX&) {
+                              return robot::JointTrajectory{
+                                  .joints = {"hinge"}, .times = {0, 0.2}, .knots = {robot::VecX::Zero(1), robot::VecX::Constant(1, 0.8)}};
+                            },
+                            0, 0.2}};
+  Coupled coarse(free_strip(0.04, 1e-3), far), fine(free_strip(0.01, 1e-3), far);
+  for (int k = 0; k < 5; ++k) {
+    ASSERT_TRUE(coarse.step()) << coarse.report.failure;
+    for (int part = 0; part < 4; ++part) ASSERT_TRUE(fine.step()) << fine.report.failure;
+    EXPECT_NEAR(coarse.bullet().state(0).q[0], fine.bullet().state(0).q[0], 1e-12) << k;
+    EXPECT_NEAR(coarse.bullet().state(0).v[6], fine.bullet().state(0).v[6], 1e-10) << k;
+  }
+  EXPECT_GT(fine.bullet().state(0).q[0], 0.1);
+}
 TEST(Exchange, RunsRepeatToTheBitAndGoOnFromAState) {
   const RobotScene scene = two_links(Vec3(0.05, 0, -0.3));
   Coupled first(free_strip(0.005, 1e-4), scene);

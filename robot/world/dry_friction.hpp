@@ -1,0 +1,28 @@
+#pragma once
+#include <vector>
+
+#include "robot/control/drives.hpp"
+
+namespace robot {
+/// Coulomb friction of a robot's joints, implicit in a substep: f = clamp(-damping v', +- friction), a damper so stiff that what sticks
+/// creeps by 1e-10 of the velocity that its load would give it in a substep.
+class DryFriction {
+ public:
+  explicit DryFriction(const RobotModel& model);
+
+  /// @param inertia  [nj] kg m^2 or kg: what each joint moves alone
+  void begin(const VecX& inertia, Real h);
+  DriveLaw law() const;
+  /// Brings the active set in line with the velocity v' [nj] at the end of a substep; true if it changed.
+  /// @param release  false: joints may only start to slip
+  bool update(const VecX& v, bool release);
+
+  /// [nj] -1, 0 or 1: the sign of the friction of joints that slip.
+  const std::vector<int>& slipping() const { return slipping_; }
+  void set_slipping(std::vector<int> slipping) { slipping_ = std::move(slipping); }
+
+ private:
+  VecX friction_, damping_;  // [nj]
+  std::vector<int> slipping_;
+};
+}  // namespace robot
