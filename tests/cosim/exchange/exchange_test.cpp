@@ -203,6 +203,50 @@ TEST(Exchange, PadsPinchAStripWithTheirDrivesForceAndLetGo) {
   EXPECT_GT(pinching, 20) << "steps in which the pads touch on the tape side";
   EXPECT_EQ(both.link(0, 0).normal.force.norm() + both.link(0, 1).normal.force.norm(), 0);
 }
+/// Two pads of 2 N each on a wrist that a soft drive draws along a strip that is held at its other end: by 2 mm it holds, by 8 it slips.
+TEST(Exchange, APinchPullsWithWhatTheStripPullsBackAndSlipsWhereFrictionEnds) {
+  constexpr Real kPress = 2, kSpring = 500, kMu = 0.5;
+  RobotModel model{.name = "gripper"};
+  model.links = {{.name = "base"},
+                 {.name = "wrist", .inertial = {0.05, Vec3::Zero(), 1e-5 * robot::Mat3::Identity()}},
+                 box_link("upper", 0.02, Vec3(0.012, 0.03, 0.01)),
+                 box_link("lower", 0.02, Vec3(0.012, 0.03, 0.01))};
+  model.joints = {joint("pull", robot::JointType::prismatic, Vec3::UnitX(), Vec3::Zero()),
+                  joint("up", robot::JointType::prismatic, -Vec3::UnitZ(), Vec3(0, 0, 0.0065)),
+                  joint("down", robot::JointType::prismatic, Vec3::UnitZ(), Vec3(0, 0, -0.0065))};
+  model.joints[1].parent = model.joints[2].parent = 1;
+  model.joints[1].damping = model.joints[2].damping =
+      20;  // N s/m: else what presses with a constant force swings from step to step (README.md)
+  RobotScene scene;
+  scene.world.gravity.setZero();
+  scene.robots = {part("gripper", model, Vec3(0.018, 0, 0))};
+  scene.robots[0].params.drives = {
+      {.kp = kSpring, .kd = 20}, {.kp = 1e4, .kd = 100, .effort = kPress}, {.kp = 1e4, .kd = 100, .effort = kPress}};
+  const auto go = [](const char* name, double to, double start) {
+    cosim::RobotMotion motion = stand(name, to);
+    motion.start = start;
+    return motion;
+  };
+  scene.robots[0].motions = {go("up", 0.003, 0), go("down", 0.003, 0), go("pull", 0.002, 0.15), go("pull", 0.008, 0.4)};
+  tape::Setup setup = free_strip(0.01, 1e-4);
+  setup.scene.materials[0].mu = kMu;
+  setup.scene.contact.kappa = 1e5;
+  setup.scene.grips = {tape::test::hold("left", {0, 1, 2, 3})};
+  Coupled both(setup, scene);
+  const auto along = [&](std::size_t pad) { return both.link(0, pad).normal.force.x() + both.link(0, pad).friction.force.x(); };
+  Real pulled = 0, held = 0, slipping = 0, pressing = 0, moved = 0;
+  for (int k = 0; k < 70; ++k) {
+    ASSERT_TRUE(both.step()) << k << ": " << both.report.failure;
+    if (k >= 29 && k < 39) pulled += along(0) + along(1), held += both.report.grip_force[0].x();
+    if (k == 38) moved = both.bullet().state(0).q[0];
+    if (k >= 60) slipping += along(0) + along(1), pressing += both.link(0, 0).normal.force.z() - both.link(0, 1).normal.force.z();
+  }
+  EXPECT_NEAR(pulled, held, 0.02 * std::fabs(held)) << "the fingers feel what the strip pulls with";
+  EXPECT_NEAR(pulled / 10, -kSpring * (0.002 - moved), 0.02 * kSpring * 0.002);
+  EXPECT_NEAR(pressing / 10, 2 * kPress, 0.02 * 2 * kPress);
+  EXPECT_NEAR(slipping / 10, -2 * kMu * kPress, 0.05 * 2 * kMu * kPress);
+  EXPECT_GT(both.bullet().state(0).q[0] - moved, 0.002) << "it has slipped";
+}
 /// A block over a plate, so near that they touch in Bullet, and a strip within 2 mm of both, which touches neither.
 TEST(Exchange, APairGoesOverToTheTapeSolverOnlyWhereTheBarrierDoesNotActYet) {
   const Real dhat = tape::test::vinyl().dhat;
