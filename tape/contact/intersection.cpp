@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 
 #include "tape/contact/gap.hpp"
@@ -18,6 +19,24 @@ Box box_of(const std::vector<Vec3>& x, std::span<const int> v) {
   Box b{at(x, v[0]), at(x, v[0])};
   for (int w : v) b = joined(b, {at(x, w), at(x, w)});
   return b;
+}
+
+/// [objects] whether one may meet another, by their boxes, or itself. A robot far from any tape has none to meet.
+std::vector<bool> in_company(const SurfaceMesh& mesh, const std::vector<Vec3>& x, const on_cpu::detail::Carriers& carriers) {
+  const std::size_t n = mesh.objects.size();
+  std::vector<std::optional<Box>> box(n);
+  std::vector<bool> company(n, false);
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto object = static_cast<std::size_t>(mesh.vertices[static_cast<std::size_t>(mesh.triangles[i].v[0])].object);
+    const Box b = box_of(x, mesh.triangles[i].v);
+    box[object] = box[object] ? joined(*box[object], b) : b;
+    if (carriers.triangle[i] == on_cpu::detail::kFree) company[object] = true;
+  }
+  for (std::size_t o = 0; o < n; ++o)
+    for (std::size_t p = 0; p < n && !company[o]; ++p)
+      company[o] = p != o && box[o] && box[p] && !mesh.kept_apart(static_cast<int>(o), static_cast<int>(p)) &&
+                   (box[o]->low.array() <= box[p]->high.array()).all() && (box[p]->low.array() <= box[o]->high.array()).all();
+  return company;
 }
 
 /// Where the edge comes closest to the triangle: good enough to find the place.
@@ -48,17 +67,26 @@ void require_finite(const std::vector<Vec3>& x, const SurfaceMesh& mesh) {
 
 Intersections find_intersections(const SurfaceMesh& mesh, const std::vector<Vec3>& x, int keep) {
   const on_cpu::detail::Carriers carriers(mesh);
+  const std::vector<bool> company = in_company(mesh, x, carriers);
+  const auto object = [&](int v) { return mesh.vertices[static_cast<std::size_t>(v)].object; };
+  const auto alone = [&](int v) { return !company[static_cast<std::size_t>(object(v))]; };
   std::vector<Lanes> boxes;
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-    boxes.push_back(stored_box(box_of(x, mesh.triangles[i].v), static_cast<int>(i), carriers.triangle[i] == on_cpu::detail::kFixed));
+  std::vector<int> ids;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (alone(mesh.triangles[i].v[0])) continue;
+    ids.push_back(static_cast<int>(i));
+    boxes.push_back(stored_box(box_of(x, mesh.triangles[i].v), ids.back(), carriers.triangle[i] == on_cpu::detail::kFixed));
+  }
   on_cpu::BoxTree tree;
   const on_cpu::Buffer<Lanes> stored(boxes);
-  tree.build(stored.span());
+  const on_cpu::Buffer<int> stored_ids(ids);
+  tree.build(stored.span(), stored_ids.span());
 
   Intersections found;
   std::vector<int> met;
   for (std::size_t i = 0; i < mesh.edges.size(); ++i) {
     const auto& e = mesh.edges[i].v;
+    if (alone(e[0])) continue;
     const int carrier = carriers.edge[i];
     const Vec3 &p = at(x, e[0]), &q = at(x, e[1]);
     met.clear();
@@ -66,7 +94,6 @@ Intersections find_intersections(const SurfaceMesh& mesh, const std::vector<Vec3
       const auto& t = mesh.triangles[static_cast<std::size_t>(j)].v;
       const bool shared = std::ranges::any_of(t, [&](int v) { return v == e[0] || v == e[1]; });
       const bool together = carrier != on_cpu::detail::kFree && carrier == carriers.triangle[static_cast<std::size_t>(j)];
-      const auto object = [&](int v) { return mesh.vertices[static_cast<std::size_t>(v)].object; };
       if (!shared && !together && !mesh.kept_apart(object(e[0]), object(t[0])) &&
           segment_meets_triangle(p, q, at(x, t[0]), at(x, t[1]), at(x, t[2])))
         met.push_back(j);
