@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <csignal>
 #include <sstream>
 
@@ -236,13 +237,17 @@ TEST(Studies, ThatShipSetWhatTheirScenesHave) {
     const std::string scene = cosim::find_file(entry.path(), "scenes", study["scene"].text()).string();
     std::vector<std::string> always;
     for (const std::string& key : study["set"].keys()) always.push_back(key + "=" + study["set"][key].text());
-    for (const std::string& key : study["grid"].keys()) {
-      for (const std::string& value : study["grid"][key].texts()) {
-        std::vector<std::string> arguments{"check", scene, "--set", key + "=" + value};
-        for (const std::string& set : always) arguments.insert(arguments.end(), {"--set", set});
-        const Outcome outcome = tapesim(arguments);
-        EXPECT_EQ(outcome.exit_code, 0) << entry.path() << ", " << key << " = " << value << ": " << outcome.err;
+    std::size_t most = 0;
+    for (const std::string& key : study["grid"].keys()) most = std::max(most, study["grid"][key].texts().size());
+    for (std::size_t k = 0; k < most; ++k) {  // the k-th values of all keys at once: each value comes up
+      std::vector<std::string> arguments{"check", scene};
+      for (const std::string& set : always) arguments.insert(arguments.end(), {"--set", set});
+      for (const std::string& key : study["grid"].keys()) {
+        const std::vector<std::string> values = study["grid"][key].texts();
+        arguments.insert(arguments.end(), {"--set", key + "=" + values[std::min(k, values.size() - 1)]});
       }
+      const Outcome outcome = tapesim(arguments);
+      EXPECT_EQ(outcome.exit_code, 0) << testing::PrintToString(arguments) << ": " << outcome.err;
     }
   }
 }
