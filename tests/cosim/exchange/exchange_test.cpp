@@ -244,7 +244,7 @@ TEST(Exchange, APinchPullsWithWhatTheStripPullsBackAndSlipsWhereFrictionEnds) {
   EXPECT_NEAR(pulled, held, 0.02 * std::fabs(held)) << "the fingers feel what the strip pulls with";
   EXPECT_NEAR(pulled / 10, -kSpring * (0.002 - moved), 0.02 * kSpring * 0.002);
   EXPECT_NEAR(pressing / 10, 2 * kPress, 0.02 * 2 * kPress);
-  EXPECT_NEAR(slipping / 10, -2 * kMu * kPress, 0.05 * 2 * kMu * kPress);
+  EXPECT_NEAR(slipping / 10, -2 * kMu * kPress, 0.02 * 2 * kMu * kPress);
   EXPECT_GT(both.bullet().state(0).q[0] - moved, 0.002) << "it has slipped";
 }
 /// A block over a plate, so near that they touch in Bullet, and a strip within 2 mm of both, which touches neither.

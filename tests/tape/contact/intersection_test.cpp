@@ -87,6 +87,8 @@ TEST(Intersection, WhatCannotCollideIsNotCounted) {
   EXPECT_EQ(find_intersections(both_carried.mesh, both_carried.x).count, 0);
   const test::Surface one = spike_over_plate(-0.5, &fixed, &body);
   EXPECT_EQ(find_intersections(one.mesh, one.x).count, 2);
+  const test::Surface far = spike_over_plate(5, &fixed, &body);  // neither has any company
+  EXPECT_EQ(find_intersections(far.mesh, far.x).count, 0);
 }
 
 TEST(Intersection, AStartIsRefusedByTheNamesOfWhatMeets) {
