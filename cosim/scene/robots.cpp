@@ -84,7 +84,17 @@ robot::VecX posed(const Reader& postures, const std::filesystem::path& scene, co
   return q;
 }
 
-void read_drives(const Reader& drives, RobotPart& part) {
+/// @param q  [nj] as the section says; joints that mimic do not count
+void require_within_limits(const Reader& section, const robot::RobotModel& model, const robot::JointMap& map, const robot::VecX& q) {
+  for (Eigen::Index u = 0; u < map.lower.size(); ++u) {
+    const int k = map.independent[static_cast<std::size_t>(u)];
+    if (q[k] < map.lower[u] || q[k] > map.upper[u])
+      section.fail(model.joints[static_cast<std::size_t>(k)].name + " = " + tape::to_text(q[k]) +
+                   " (allowed: " + tape::to_text(map.lower[u]) + " to " + tape::to_text(map.upper[u]) + ")");
+  }
+}
+
+void read_drives(const Reader& drives, const robot::JointMap& map, RobotPart& part) {
   const auto n = static_cast<Eigen::Index>(part.model->joints.size());
   const robot::VecX none = robot::VecX::Zero(n), unlimited = robot::VecX::Constant(n, std::numeric_limits<Real>::infinity());
   const robot::VecX kp = per_joint(drives["kp"], *part.model, none, Range::non_negative(), "N m/rad or N/m");
@@ -92,7 +102,10 @@ void read_drives(const Reader& drives, RobotPart& part) {
   const robot::VecX effort = per_joint(drives["effort"], *part.model, unlimited, Range::positive(), "N m or N");
   for (Eigen::Index k = 0; k < kp.size(); ++k) part.params.drives.push_back({kp[k], kd[k], effort[k]});
   part.params.compensate_gravity = drives["compensate_gravity"].flag_or(false);
-  if (const Reader target = drives["target"]) part.target = per_joint(target, *part.model, part.start, kPlace, "rad or m");
+  if (const Reader target = drives["target"]) {
+    part.target = per_joint(target, *part.model, part.start, kPlace, "rad or m");
+    require_within_limits(target, *part.model, map, part.target);
+  }
 }
 
 robot::RobotModel load_robot(const Reader& section, const SceneFile& file) {
@@ -136,13 +149,8 @@ RobotPart read_robot(const Reader& section, const std::string& name, const Scene
   const robot::VecX wanted =
       per_joint(section["joints"], *part.model, posed(section["postures"], file.path(), *part.model), kPlace, "rad or m");
   part.start = map.all(map.independent_of(wanted).cwiseMax(map.lower).cwiseMin(map.upper));
-  for (Eigen::Index u = 0; section["joints"] && u < map.lower.size(); ++u) {
-    const int k = map.independent[static_cast<std::size_t>(u)];
-    if (wanted[k] != part.start[k])
-      section["joints"].fail(part.model->joints[static_cast<std::size_t>(k)].name + " = " + tape::to_text(wanted[k]) +
-                             " (allowed: " + tape::to_text(map.lower[u]) + " to " + tape::to_text(map.upper[u]) + ")");
-  }
-  read_drives(section["drives"], part);
+  if (const Reader joints = section["joints"]) require_within_limits(joints, *part.model, map, wanted);
+  read_drives(section["drives"], map, part);
   return part;
 }
 
@@ -152,11 +160,15 @@ using Model = std::shared_ptr<const robot::RobotModel>;
 Plan to_joints(const Reader& entry, const Model& model) {
   const Reader section = entry["joints"];
   const std::vector<std::string> names = section.keys();
+  const robot::JointMap map = joint_map(*model);
   std::vector<Eigen::Index> at;
   robot::VecX to(static_cast<Eigen::Index>(names.size()));
   for (std::size_t k = 0; k < names.size(); ++k) {
-    at.push_back(static_cast<Eigen::Index>(choose(section, names[k], joint_names(*model))));
-    to[static_cast<Eigen::Index>(k)] = section[names[k]].number(kPlace, "rad or m");
+    const std::size_t joint = choose(section, names[k], joint_names(*model));
+    const auto u = std::ranges::find(map.independent, static_cast<int>(joint)) - map.independent.begin();
+    if (u == map.lower.size()) section[names[k]].fail("the joint follows another: it has no drive");
+    at.push_back(static_cast<Eigen::Index>(joint));
+    to[static_cast<Eigen::Index>(k)] = section[names[k]].number(Range::closed(map.lower[u], map.upper[u]), "rad or m");
   }
   const robot::MotionLimits limits = at_place(entry, [&] { return robot::motion_limits(*model, names, 1, kAcceleration); });
   const Real duration = entry["duration"].number_or(0, Range::above(0, kForever), "s");

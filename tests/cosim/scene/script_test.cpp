@@ -113,6 +113,13 @@ TEST(Script, JointsMayBeNamedByAPattern) {
   EXPECT_EQ(arm.params.drives[1].kp, 100);
   EXPECT_NE(refusal(kArm + "script: [{robot: arm, joints: {arm_jont1: 1}, duration: 1}]").find("arm_joint1"), std::string::npos);
 }
+TEST(Script, JointsAreToldNothingBeyondTheirLimits) {
+  const std::string beyond = refusal(kArm + "script: [{robot: arm, joints: {arm_joint1: 1, arm_joint2: 2.5}, duration: 2}]");
+  for (const char* says : {"joints.arm_joint2 = 2.5", "[-2, 2] rad or m"}) EXPECT_NE(beyond.find(says), std::string::npos) << beyond;
+  const std::string held =
+      refusal("film: vinyl_19mm\nstrip: {length: 0.1}\nrobots: {arm: {urdf: arm7.urdf, drives: {kp: 1, target: {arm_joint2: -3}}}}\n");
+  for (const char* says : {"drives.target", "arm_joint2 = -3 (allowed: -2 to 2)"}) EXPECT_NE(held.find(says), std::string::npos) << held;
+}
 /// As a crease: a spring to upright, however the flap starts.
 TEST(Script, DrivesHoldTheirTargetUntilAMotionSaysOtherwise) {
   const RobotPart carton =
