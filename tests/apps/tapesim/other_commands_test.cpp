@@ -230,6 +230,14 @@ TEST_F(Render, MakesStillsAndAVideoFromAnyCameraAndRefusesWhatIsNotThere) {
   EXPECT_EQ(tapesim({"render", (folder / "none").string()}).exit_code, 2);
 }
 
+TEST(ShippedScenes, StartSound) {
+  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(TAPE_SOURCE_DIR) / "data" / "scenes")) {
+    if (entry.path().extension() != ".yaml") continue;
+    const Outcome outcome = tapesim({"check", entry.path().string()});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  }
+}
+
 TEST(Studies, ThatShipSetWhatTheirScenesHave) {
   for (const auto& entry : std::filesystem::directory_iterator(TAPE_SOURCE_DIR "/data/studies")) {
     const cosim::SceneFile study = cosim::SceneFile::load(entry.path());

@@ -232,6 +232,15 @@ TEST_F(Run, ThreadsDoNotChangeABit) {
     EXPECT_EQ(report("more")["threads"], std::stoi(threads));
   }
 }
+/// An arm whose fingers close on the end of a tape and begin to lift its roll.
+TEST_F(Run, WithAnArmNeitherThreadsNorAResumeChangeABit) {
+  scene = TAPE_SOURCE_DIR "/data/scenes/arm_swing.yaml";
+  ASSERT_EQ(run("whole", {"--threads", "1", "--steps", "45"}).exit_code, 0);
+  ASSERT_EQ(run("parts", {"--threads", "8", "--steps", "20"}).exit_code, 0);
+  ASSERT_EQ(run("parts", {"--threads", "2", "--steps", "25", "--resume", (folder / "parts" / "snapshot.h5").string()}).exit_code, 0);
+  EXPECT_EQ(report("parts")["state_hash"], report("whole")["state_hash"]);
+  EXPECT_GT(report("whole")["figures"]["link_force_max_N.station:right_finger1_link4"].get<double>(), 1) << "it holds the tape";
+}
 TEST_F(Run, ASettingFromOutsideReplacesTheSceneFiles) {
   ASSERT_EQ(run("a", {"--steps", "1", "--set", "strip.length=0.03", "--set", "solver.velocity_tol=1e-4"}).exit_code, 0);
   EXPECT_EQ(report("a")["settings"]["strips"]["tape"]["length"], 0.03);
