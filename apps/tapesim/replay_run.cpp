@@ -80,7 +80,8 @@ std::string key_of(const LoadedReplay& replay, int repeat, Backend backend) {
   Hash hash;
   const auto add = [&](const std::string& text) { hash.add(text.data(), text.size()); };
   add(fmt::format("{} {} {} {} {} {}\n", TAPE_VERSION, threads(), runs_on_cuda(backend), repeat, replay.model(), r.start));
-  add(cosim::read_whole_file(r.scene, r.scene.string()) + cosim::read_whole_file(r.recording, r.recording.string()));
+  add(cosim::read_whole_file(r.scene, r.scene.string()));
+  for (const std::filesystem::path& file : r.files) add(cosim::read_whole_file(file, file.string()));
   add(fmt::format("{}\n", fmt::join(replay.scene.overrides, "\n")));
   for (const cosim::DrivenJoint& joint : r.joints)
     add(fmt::format("{} {} {} {} {} {} {}\n", joint.recorded, joint.robot, joint.joint, joint.sign, joint.scale, joint.offset,

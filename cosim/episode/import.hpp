@@ -1,6 +1,5 @@
 #pragma once
 #include <filesystem>
-#include <map>
 
 #include "cosim/episode/episode.hpp"
 #include "robot/control/vendor_recording.hpp"
@@ -21,7 +20,7 @@ MotionStream import_csv(const std::filesystem::path& file, const std::string& st
 /// Units of the joints of a LeRobot data set, which says nothing about them.
 struct LeRobotUnits {
   Unit usual = Unit::rad;
-  std::map<std::string, Unit> of = {};  ///< joints that differ
+  std::vector<std::pair<std::string, Unit>> of = {};  ///< joints that differ; a * stands for any text, later ones override earlier ones
 };
 /// An episode of a LeRobot data set, version 2.1: meta/info.json and meta/episodes.jsonl of its folder, and the episode's table as CSV with
 /// columns timestamp [s], state.<joint> (observation.state, measured) and action.<joint> (commanded), if the set has it. README.md says how

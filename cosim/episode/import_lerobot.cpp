@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fnmatch.h>
 
 #include <algorithm>
 #include <cmath>
@@ -81,15 +82,16 @@ std::vector<TableJoint> table_joints(const Info& info, const LeRobotUnits& units
   if (!actions.empty() && actions != states)
     throw InputError(info.name() + ": features.action.names differ from those of observation.state (allowed: the same joints)");
   std::vector<TableJoint> joints;
-  for (const std::string& joint : states) {
-    const auto own = units.of.find(joint);
-    joints.push_back(
-        {joint, own == units.of.end() ? units.usual : own->second, "state." + joint, actions.empty() ? "" : "action." + joint});
-  }
-  for (const auto& [joint, unit] : units.of)
-    if (std::find(states.begin(), states.end(), joint) == states.end())
-      throw InputError(fmt::format("{}: there is no joint {}, whose unit {} is given (allowed: {})", info.name(), joint, to_text(unit),
+  for (const std::string& joint : states)
+    joints.push_back({joint, units.usual, "state." + joint, actions.empty() ? "" : "action." + joint});
+  for (const auto& [name, unit] : units.of) {
+    bool found = false;
+    for (TableJoint& joint : joints)
+      if (fnmatch(name.c_str(), joint.name.c_str(), 0) == 0) joint.unit = unit, found = true;
+    if (!found)
+      throw InputError(fmt::format("{}: there is no joint {}, whose unit {} is given (allowed: {})", info.name(), name, to_text(unit),
                                    fmt::join(states, ", ")));
+  }
   return joints;
 }
 }  // namespace

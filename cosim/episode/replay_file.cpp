@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "cosim/episode/camera_file.hpp"
-#include "cosim/episode/episode_file.hpp"
 #include "cosim/episode/resample.hpp"
 #include "robot/kinematics/joint_map.hpp"
 
@@ -199,8 +198,8 @@ Replay read_replay(const SceneFile& file) {
   Replay replay;
   replay.name = file["episode"].text();
   replay.scene = named_file(file["scene"], file.path(), "scenes");
-  replay.recording = named_file(file["recording"], file.path(), "episodes");
-  replay.episode = read_episode(replay.recording);
+  Recording recording = read_recording(file["recording"], file.path());
+  replay.episode = std::move(recording.episode), replay.files = std::move(recording.files);
   const Reader set = file["set"];
   for (const std::string& key : set.keys()) replay.overrides.push_back(key + "=" + set[key].text());
   file.root().read(replay.params);

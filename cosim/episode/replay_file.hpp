@@ -1,5 +1,5 @@
 #pragma once
-#include "cosim/episode/episode.hpp"
+#include "cosim/episode/recording.hpp"
 #include "cosim/run/read_run.hpp"
 
 namespace cosim {
@@ -46,10 +46,11 @@ struct Photographs {
 /// What EPISODE.yaml asks for (README.md): a scene, a recording, and how one moves in the other.
 struct Replay {
   std::string name;
-  std::filesystem::path scene, recording;
+  std::filesystem::path scene;
   std::vector<std::string> overrides;  ///< of keys of the scene: "path.to.key=value"
   Episode episode;
-  std::string camera;  ///< in whose pictures it is scored; its calibration may have been replaced; empty: not scored
+  std::vector<std::filesystem::path> files;  ///< that the episode was read from
+  std::string camera;                        ///< in whose pictures it is scored; its calibration may have been replaced; empty: not scored
   Photographs photographs;
   Real start = 0;  ///< [s] on the episode's clock, at which the simulation's time is 0
   ReplayParams params;

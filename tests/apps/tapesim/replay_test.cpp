@@ -4,6 +4,7 @@
 #include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <sstream>
@@ -12,6 +13,7 @@
 #include "cosim/episode/episode_file.hpp"
 #include "cosim/run/state_file.hpp"
 #include "tests/apps/tapesim/program.hpp"
+#include "tests/robot/support/real_data.hpp"
 
 using namespace tape::test;
 using cosim::Episode;
@@ -101,6 +103,12 @@ class ReplayCommand : public testing::Test {
   }
   /// [px] of the first model.
   static double mean_error(const std::string& episode) { return std::stod(column(at("out_" + episode + "/replay.csv"), "mean_px").at(0)); }
+
+  /// [rad or m] of a joint of the one robot at the end of the only run.
+  static double last_position(const std::string& episode, int joint) {
+    const cosim::StateReader states(at("out_" + episode + "/" + episode + "/none/1/state.h5"));
+    return states.frame(states.frames() - 1).robots.at(0).position[joint];
+  }
 
   /// NAME.h5 and NAME.yaml: real.h5 after a change, with other text in the YAML file.
   template <class Change>
@@ -219,6 +227,72 @@ TEST_F(ReplayCommand, AnEpisodeWithoutACameraIsReplayedAndNotScored) {
   const Outcome outcome = replay("blind", kPosed);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(column(at("out_blind/replay.csv"), "mean_px"), std::vector<std::string>{""});
+}
+/// The same recording as other programs would have written it.
+TEST_F(ReplayCommand, FilesOfOthersScoreAsTheEpisodeThatHoldsTheSame) {
+  const Episode real = cosim::read_episode(at("real.h5"));
+  std::ostringstream motion, marks;
+  motion.precision(17), marks.precision(17);
+  motion << "stamp,slide_mm\n";
+  for (std::size_t i = 0; i < real.streams[0].times.size(); ++i)
+    motion << real.streams[0].times[i] << ',' << 1e3 * real.streams[0].measured[i][0] << '\n';
+  marks << "time_s,u [px],v [px],kind,visible,estimated\n";
+  for (const Landmark& mark : real.landmarks[0].landmarks)
+    marks << mark.time << ',' << mark.pixel.x() << ',' << mark.pixel.y() << ",rim,1,0\n";
+  folder->file("motion.csv", motion.str()), folder->file("marks.csv", marks.str());
+  folder->file("lens.yaml",
+               "{fx: 600, fy: 600, cx: 423.5, cy: 239.5, width: 848, height: 480, distortion: [-0.28, 0.09, 0.0007, -0.0004, -0.012], "
+               "position: [0.02, 0.01, 0.4255], rotation: [3.14159265358979, 0, 0]}\n");
+  const std::string head =
+      "episode: others\nscene: tray.yaml\ncamera: ego\nlead_in: 0.1\njoints: {slide: {drives: \"tray:slide\", unit: mm}}\n";
+  const std::string motions = "  motion: [{csv: motion.csv, time: stamp, joints: {slide: {measured: slide_mm, unit: mm}}}]\n";
+  const std::string seen = "  cameras: {ego: lens.yaml}\n  landmarks: {ego: {marks: marks.csv}}\n";
+  folder->file("others.yaml", head + "recording:\n  origin: by hand\n" + motions + seen);
+  const Outcome outcome = replay("others", kPosed);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("others: by hand"));
+  EXPECT_LT(mean_error("others"), 0.05);
+
+  const auto refused = [&](const std::string& recording) {
+    folder->file("bad.yaml", head + "recording:\n" + recording);
+    const Outcome bad = replay("bad", kPosed);
+    EXPECT_EQ(bad.exit_code, 2);
+    return bad.err;
+  };
+  EXPECT_THAT(refused(seen), AllOf(HasSubstr("recording.motion"), HasSubstr("missing"), HasSubstr("lerobot")));
+  EXPECT_THAT(refused("  motion: [{cvs: motion.csv}]\n" + seen), AllOf(HasSubstr("bad.yaml:7"), HasSubstr("one of csv, lerobot, vendor")));
+  EXPECT_THAT(refused("  motion: [{csv: none.csv, time: stamp, joints: {}}]\n"), HasSubstr("there is no such file"));
+  EXPECT_THAT(refused(motions + "  cameras: {ego: lens.yaml}\n  landmarks: {ergo: {marks: marks.csv}}\n"), HasSubstr("ergo"));
+  EXPECT_THAT(refused(motions + seen + "  photos: 3\n"), HasSubstr("recording.photos"));
+}
+/// Skipped where the data is absent. The arm's last positions are those of the recording's last row.
+TEST_F(ReplayCommand, RecordingsOfRealRobotsMoveTheirModels) {
+  const std::filesystem::path data = robot::test::real_data(), g1 = data / "g1_inspire_lerobot";
+  if (!std::filesystem::exists(g1)) GTEST_SKIP() << "needs " << g1;
+  folder->file("marvin.srdf",
+               "<robot name=\"marvin\"><disable_collisions link1=\"Link3_L\" link2=\"Link5_L\"/><disable_collisions link1=\"Link5_L\" "
+               "link2=\"Link7_L\"/></robot>");
+  const std::string urdf = '"' + robot::test::marvin_arm().string() + '"',
+                    strip = "film: vinyl_19mm\nstrip: {length: 0.05, position: [5, 0, 0]}\n";
+  folder->file("marvin_scene.yaml", "scene: marvin_scene\ntime: {dt: 0.02}\n" + strip + "robots: {arm: {urdf: " + urdf +
+                                        ", srdf: marvin.srdf, drives: {kp: 2000, kd: 100, compensate_gravity: true}}}\n");
+  folder->file("marvin.yaml", "episode: marvin\nscene: marvin_scene.yaml\nrecording:\n  motion:\n    - vendor: \"" +
+                                  (data / "marvin_m6_ccs" / "recordings" / "aa.txt").string() + "\"\n      urdf: " + urdf +
+                                  "\n      columns: recorded\n      joints: [Joint1_L, Joint2_L, Joint3_L, Joint4_L, Joint5_L, Joint6_L, "
+                                  "Joint7_L]\nlead_in: 0.1\njoints: {\"*\": {drives: \"arm:*\", unit: rad}}\n");
+  const Outcome marvin = replay("marvin");
+  ASSERT_EQ(marvin.exit_code, 0) << marvin.err;
+  EXPECT_NEAR(last_position("marvin", 2), 90 * std::numbers::pi / 180, 0.01) << "the third joint goes from 0 to 90 deg";
+
+  folder->file("station.yaml", "scene: station\ntime: {dt: 0.033333333333333333}\n" + strip +
+                                   "robots: {station: {urdf: station.urdf, drives: {kp: 5000, kd: 300, compensate_gravity: true}}}\n");
+  folder->file("g1.yaml", "episode: g1\nscene: station.yaml\nrecording:\n  motion:\n    - lerobot: \"" + g1.string() +
+                              "\"\n      episode: 2\n      table: \"" + (g1 / "csv_converted" / "episode_000002.csv").string() +
+                              "\"\n      unit: rad\n      units: {\"k*Hand*\": 1}\nstart: 10\nlead_in: 0.1\njoints:\n  \"*\": none\n"
+                              "  kLeftElbow: {drives: \"station:left_arm_joint4\", unit: rad, sign: -1, offset: 1.5707}\n"
+                              "  kLeftHandIndex: {drives: \"station:left_finger2_joint1\", unit: 1, scale: 1.2}\n");
+  const Outcome teleoperated = replay("g1");
+  EXPECT_EQ(teleoperated.exit_code, 0) << teleoperated.err;
 }
 TEST_F(ReplayCommand, PicturesShowPhotographsAndRunsSideBySide) {
   Picture dark(848, 480), light(848, 480);

@@ -98,10 +98,7 @@ TEST_F(Import, LandmarksAreReadAndBadOnesRefused) {
 TEST_F(Import, RealTeleoperationOfARobotWithHandsBecomesAnEpisode) {
   const std::filesystem::path set = robot::test::real_data() / "g1_inspire_lerobot", csv = set / "csv_converted" / "episode_000002.csv";
   if (!std::filesystem::exists(csv)) GTEST_SKIP() << csv << " is absent: set TAPESIM_REAL_DATA";
-  LeRobotUnits units;
-  for (const char* side : {"Left", "Right"})
-    for (const char* finger : {"Pinky", "Ring", "Middle", "Index", "ThumbBend", "ThumbRotation"})
-      units.of["k" + std::string(side) + "Hand" + finger] = Unit::one;
+  const LeRobotUnits units{.of = {{"k*Hand*", Unit::one}}};
   Episode episode{.name = "bottle", .origin = csv.string(), .streams = {import_lerobot(set, 2, csv, units)}};
   write_episode(folder / "bottle.h5", episode);
   const MotionStream motion = read_episode(folder / "bottle.h5").streams[0];
