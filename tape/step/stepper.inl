@@ -427,6 +427,7 @@ class SideStepper final : public Stepper {
 
   /// Newton's method from now_ == start_, the start of a step at `state`, to its end.
   bool newton(const State& state, StepReport& report) {
+    constexpr Real kOpening = 0.58;  // share of the slope by which a third or fourth power falls: 7/12, 0.602
     const NewtonParams& params = world_.setup.newton;
     recall(state.memory);
     if (state.time == 0) recall(remember(0));  // at the start of a run pairs in the contact band are as engaged as new ones
@@ -468,8 +469,10 @@ class SideStepper final : public Stepper {
       const int halvings = report.halvings;
       if (!line_search(slope, report, at_round_off)) return false;
       overshot_ = report.halvings > halvings;
-      const bool foreseen = -slope <= 1e3 * round_off || as_foreseen((before - energy_.sum) / -slope, moved, last);
+      const Real share = (before - energy_.sum) / -slope;
+      const bool foreseen = -slope <= 1e3 * round_off || as_foreseen(share, moved, last);
       if (at_round_off || (converged && foreseen && moved <= objective_->accuracy_to_judge(view(now_)))) return converged_to();
+      if (!foreseen && !overshot_ && limit_ == 1 && share > kOpening && go_on()) previous = 0;
     }
     return fail(report, "Newton's method took " + std::to_string(params.max_newton) + " iterations (solver.max_newton)");
   }
@@ -555,20 +558,40 @@ class SideStepper final : public Stepper {
     for (; way > kFar * dhat && !search_->within(paths(), contact.margin * dhat, kMost); way /= 4) scale(0.25);
   }
 
-  /// Moves now_ along direction_: limited by CCD for each connected component, then halved until the energy falls.
-  bool line_search(Real slope, StepReport& report, bool& at_round_off) {
+  /// Shortens direction_ so that nothing crosses on the way: by CCD for each connected component.
+  void limit_direction() {
     limit_ = 1;
-    if (search_) {
-      shorten_direction();
-      update_candidates(direction_.span());
-      if (search_->candidates().size + search_->bonded().size > 0) {
-        const Stopwatch watch(ccd_ms_);
-        const std::vector<Real> limits =
-            search_->limit_steps(coordinates_->paths(now_, direction_.span()), {.eta = world_.setup.scene.contact.ccd_gap});
-        limit_ *= *std::ranges::min_element(limits);
-        search_->scale(direction_.span());
-      }
+    if (!search_) return;
+    shorten_direction();
+    update_candidates(direction_.span());
+    if (search_->candidates().size + search_->bonded().size == 0) return;
+    const Stopwatch watch(ccd_ms_);
+    const std::vector<Real> limits =
+        search_->limit_steps(coordinates_->paths(now_, direction_.span()), {.eta = world_.setup.scene.contact.ccd_gap});
+    limit_ *= *std::ranges::min_element(limits);
+    search_->scale(direction_.span());
+  }
+
+  /// The minimum of a fourth power, as of the barrier where a contact opens, is three of Newton's updates away: makes the two that are
+  /// left, or one more, if that is lower still.  @return whether it was
+  bool go_on() {
+    parallel_for(direction_.size(), stepping::Scale{direction_.span(), 2});
+    limit_direction();
+    const Stopwatch watch(line_search_ms_);
+    for (Real step : {1.0, 0.5}) {
+      coordinates_->move(now_, direction_.span(), step, trial_);
+      const EnergySum after = energy(trial_);
+      if (!(after.sum < energy_.sum)) continue;
+      std::swap(now_, trial_);
+      energy_ = after;
+      return true;
     }
+    return false;
+  }
+
+  /// Moves now_ along direction_, as far as nothing crosses; half of that, a quarter ... until the energy falls.
+  bool line_search(Real slope, StepReport& report, bool& at_round_off) {
+    limit_direction();
     const Stopwatch watch(line_search_ms_);
     const Real round_off = kEnergyRoundOff * energy_.scale;
     at_round_off = -slope <= round_off;
