@@ -12,7 +12,8 @@ std::string gaps_text(const GapsBelow& gaps) {
                      gaps.apart == gaps.vertices ? ": lower roll.pitch" : "");
 }
 
-void print_rolls(const World& world) {
+void print_rolls(const LoadedWorld& loaded) {
+  const World& world = loaded.world;
   const Scene& scene = world.setup.scene;
   for (std::size_t s = 0; s < scene.strips.size(); ++s) {
     if (!scene.strips[s].winding) continue;
@@ -20,7 +21,7 @@ void print_rolls(const World& world) {
     fmt::print("roll '{}': pitch {} m, gaps from {:.4g} m; to the hub {}", scene.strips[s].name, to_text(scene.strips[s].winding->pitch),
                gaps.smallest, gaps_text(gaps.hub));
     if (gaps.layers.vertices > 0) fmt::print("; between layers {}", gaps_text(gaps.layers));
-    fmt::print("\n");
+    fmt::print("{}\n", as_wound(loaded.input.run, s) ? "; as it is wound: a run lets it come to rest first" : "");
   }
 }
 
@@ -30,7 +31,7 @@ int check(const SceneArguments& arguments) {
   fmt::print("{}: sound. Strips: {}, bodies: {}, vertices: {}, triangles: {}, unknowns: {}; {} steps of {} s\n", arguments.scene,
              scene.strips.size(), scene.bodies.size(), loaded.world.assembly.surface_vertices, loaded.world.assembly.triangles.size(),
              3 * loaded.world.assembly.blocks, cosim::planned_steps(scene), to_text(scene.time.dt));
-  print_rolls(loaded.world);
+  print_rolls(loaded);
   return kDone;
 }
 }  // namespace

@@ -12,11 +12,15 @@
 namespace tape::tapesim {
 namespace {
 /// What the solver refuses it names by strips and bodies; the file is ours to add.
-World build_world(const Setup& setup, const std::string& file) {
+World build_world(const cosim::RunInput& run, const std::string& file) {
   try {
-    return World::build(setup);
+    return World::build(run.setup);
   } catch (const InputError& e) {
-    throw InputError(file + ": " + e.what());
+    std::string why = file + ": " + e.what();
+    for (std::size_t s = 0; s < run.setup.scene.strips.size(); ++s)
+      if (as_wound(run, s))
+        why += " (roll '" + run.setup.scene.strips[s].name + "' stands as it is wound: a run lets it come to rest first)";
+    throw InputError(why);
   }
 }
 
@@ -38,6 +42,10 @@ void settle(cosim::RunInput& run, const std::string& file, Rolls rolls) {
   }
 }
 }  // namespace
+
+bool as_wound(const cosim::RunInput& run, std::size_t strip) {
+  return run.settle_roll && run.setup.scene.strips[strip].settled.empty() && cosim::holds_together(run.setup.scene, strip);
+}
 
 SettleParams watched_settle() {
   SettleParams params;
@@ -66,7 +74,7 @@ LoadedWorld load_world(const SceneArguments& arguments, Rolls rolls, const std::
   SceneInput input = load_scene(arguments);
   if (prepare) prepare(input.run);
   settle(input.run, arguments.scene, rolls);
-  World world = build_world(input.run.setup, arguments.scene);
+  World world = build_world(input.run, arguments.scene);
   try {
     cosim::require_figures(input.run.figures, world);
   } catch (const InputError& e) {

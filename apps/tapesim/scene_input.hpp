@@ -38,6 +38,8 @@ struct LoadedWorld {
 };
 /// Rolls come to rest first, unless only those are wanted that have done so before.
 enum class Rolls { settle, as_known };
+/// A roll that stands as it is wound, because nobody has let it come to rest yet.
+bool as_wound(const cosim::RunInput& run, std::size_t strip);
 /// @param prepare  may change what was read before the world is built
 /// @throws InputError also for figures that do not fit the scene, and for an initial state that cannot be
 LoadedWorld load_world(const SceneArguments& arguments, Rolls rolls, const std::function<void(cosim::RunInput&)>& prepare = {});

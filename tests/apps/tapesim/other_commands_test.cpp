@@ -79,6 +79,11 @@ TEST_F(Check, TellsTheGapsOfARoll) {
   EXPECT_THAT(line_of(tapesim({"check", roll}).out, "roll"),
               ContainsRegex("'tape': pitch 0.00018 m, gaps from .* to the hub .* between layers"));
   EXPECT_THAT(tapesim({"check", roll, "--set", "roll.pitch=4e-4"}).out, HasSubstr("lower roll.pitch"));
+  EXPECT_THAT(line_of(tapesim({"check", roll}).out, "roll"), Not(HasSubstr("as it is wound"))) << "nothing would hold it together at rest";
+  const std::string sticks =
+      "interfaces: [{between: [tape.sticky, tape], law: per_pair, cn: 1.2345}, {between: [tape.sticky, hub], law: per_pair}]\n";
+  EXPECT_THAT(line_of(tapesim({"check", folder.file("sticks.yaml", read(roll) + sticks)}).out, "roll"),
+              HasSubstr("as it is wound: a run lets it come to rest first"));
   const Outcome crossed = tapesim({"check", roll, "--set", "strip.cell_length=0.005"});
   EXPECT_EQ(crossed.exit_code, 2);
   EXPECT_THAT(crossed.err, ContainsRegex("roll.yaml: roll 'tape': turn .* cross: raise roll.pitch"));
