@@ -29,10 +29,7 @@ class Importer {
 
  private:
   fs::path file(const Reader& name, const char* subfolder = "episodes") {
-    const fs::path found = find_file(from_, subfolder, name.text());
-    if (found.empty()) name.fail("there is no such file");
-    recording_.files.push_back(found);
-    return found;
+    return recording_.files.emplace_back(named_file(name, from_, subfolder));
   }
 
   MotionStream stream(const Reader& entry) {
@@ -90,10 +87,15 @@ class Importer {
 };
 }  // namespace
 
+fs::path named_file(const Reader& name, const fs::path& from, const std::string& subfolder) {
+  const fs::path found = find_file(from, subfolder, name.text());
+  if (found.empty()) name.fail("there is no such file");
+  return found;
+}
+
 Recording read_recording(const Reader& recording, const fs::path& from) {
   if (recording.is_map()) return Importer(recording, from).all();
-  const fs::path found = find_file(from, "episodes", recording.text());
-  if (found.empty()) recording.fail("there is no such file");
+  const fs::path found = named_file(recording, from, "episodes");
   return {read_episode(found), {found}};
 }
 }  // namespace cosim

@@ -6,6 +6,9 @@
 #include "cosim/scene/reader.hpp"
 
 namespace cosim {
+/// The file that a key names: find_file from EPISODE.yaml.  @throws InputError "file:line: key = value: ..." if there is none
+std::filesystem::path named_file(const Reader& name, const std::filesystem::path& from, const std::string& subfolder);
+
 /// What a replay follows, and the files that it was read from.
 struct Recording {
   Episode episode;

@@ -14,12 +14,6 @@ namespace cosim {
 namespace {
 namespace fs = std::filesystem;
 
-fs::path named_file(const Reader& name, const fs::path& from, const std::string& subfolder) {
-  const fs::path found = find_file(from, subfolder, name.text());
-  if (found.empty()) name.fail("there is no such file");
-  return found;
-}
-
 /// A recorded joint, and its stream.
 struct Place {
   const MotionStream* stream;
