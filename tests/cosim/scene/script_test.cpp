@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <limits>
 
 #include "cosim/scene/read_scene.hpp"
@@ -118,6 +119,16 @@ TEST(Script, JointsAreToldNothingBeyondTheirLimits) {
   for (const char* says : {"joints.arm_joint2 = 2.5", "[-2, 2] rad or m"}) EXPECT_NE(beyond.find(says), std::string::npos) << beyond;
   const std::string held =
       refusal("film: vinyl_19mm\nstrip: {length: 0.1}\nrobots: {arm: {urdf: arm7.urdf, drives: {kp: 1, target: {arm_joint2: -3}}}}\n");
+  const auto folded = std::filesystem::temp_directory_path() / "tape_script_test_mimic.urdf";
+  std::ofstream(folded) << R"(<robot name="fold"><link name="base"/>
+    <link name="a"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+    <link name="b"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+    <joint name="lead" type="revolute"><parent link="base"/><child link="a"/><axis xyz="1 0 0"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+    <joint name="tip" type="revolute"><parent link="a"/><child link="b"/><axis xyz="1 0 0"/><limit lower="-1" upper="1" effort="1" velocity="1"/>
+      <mimic joint="lead"/></joint></robot>)";
+  const std::string follows =
+      refusal(kStrip + "robots: {fold: {urdf: " + folded.string() + "}}\nscript: [{robot: fold, joints: {tip: 0.1}, duration: 1}]");
+  EXPECT_NE(follows.find("the joint follows another"), std::string::npos) << follows;
   for (const char* says : {"drives.target", "arm_joint2 = -3 (allowed: -2 to 2)"}) EXPECT_NE(held.find(says), std::string::npos) << held;
 }
 /// As a crease: a spring to upright, however the flap starts.
