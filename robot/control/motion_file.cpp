@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "robot/kinematics/joint_map.hpp"
+
 namespace robot {
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view kBlanks = " \t\r";
@@ -28,12 +30,15 @@ MotionFile::MotionFile(const std::filesystem::path& file, const RobotModel& mode
   for (const std::string& name : joints) {
     in_model_.push_back(model.find_joint(name));
     if (in_model_.back() < 0) throw InputError(fmt::format("{}: robot {} has no joint {}", file.string(), model.name, name));
+    range_.push_back(joint_range(model, in_model_.back()));
   }
 }
 
 bool MotionFile::next_line() {
   while (std::getline(text_, line_)) {
     ++line_number_;
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // as spreadsheets write it
+    if (line_number_ == 1 && line_.starts_with(kByteOrderMark)) line_.erase(0, kByteOrderMark.size());
     const std::string_view line = trimmed(line_);
     if (!line.empty() && line.front() != '#') return true;
   }
@@ -52,10 +57,9 @@ Real MotionFile::number(const std::string& where, std::string_view text) const {
 }
 
 void MotionFile::require_within(const std::string& where, Real q, std::size_t j) const {
-  const Joint& of_model = joint(j);
-  if (q < of_model.lower - options_.slack || q > of_model.upper + options_.slack)
-    fail(fmt::format("{}: joint {} = {:g} is beyond its limits (allowed: {:g} to {:g} rad or m)", where, of_model.name, q, of_model.lower,
-                     of_model.upper));
+  const auto [lower, upper] = range_[j];
+  if (q < lower - options_.slack || q > upper + options_.slack)
+    fail(fmt::format("{}: joint {} = {:g} is beyond its limits (allowed: {:g} to {:g} rad or m)", where, joint(j).name, q, lower, upper));
 }
 
 void MotionFile::add(const std::string& where, Real t, const VecX& q) {

@@ -41,7 +41,8 @@ class MotionFile {
   std::ifstream text_;
   std::string line_;
   int line_number_ = 0;
-  std::vector<int> in_model_;  // [joints]
+  std::vector<int> in_model_;                 // [joints]
+  std::vector<std::pair<Real, Real>> range_;  // [joints] rad or m
   JointTrajectory result_;
 };
 }  // namespace robot

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robot/kinematics/joint_map.hpp"
+
 namespace robot {
 namespace {
 /// A posture file while it is read.
@@ -85,11 +87,11 @@ class PostureReader {
 };
 
 /// Angle [rad] for a value in the unit of the file.
-Real angle_of(Real value, HandPostures::Unit unit, const Joint& joint) {
+Real angle_of(Real value, HandPostures::Unit unit, Real lower, Real upper) {
   if (unit == HandPostures::Unit::rad) return value;
-  const Real zero = std::clamp(0., joint.lower, joint.upper);
+  const Real zero = std::clamp(0., lower, upper);
   if (value == 0) return zero;  // also where there is no limit
-  return value > 0 ? zero + value * (joint.upper - zero) : zero - value * (joint.lower - zero);
+  return value > 0 ? zero + value * (upper - zero) : zero - value * (lower - zero);
 }
 }  // namespace
 
@@ -111,11 +113,11 @@ VecX HandPostures::angles(const RobotModel& model, const std::string& prefix, co
   for (std::size_t j = 0; j < names.size(); ++j) {
     const int k = model.find_joint(names[j]);
     if (k < 0) throw InputError(fmt::format("{}: posture {}: robot {} has no joint {}", file, posture, model.name, names[j]));
-    const Joint& joint = model.joints[k];
-    q[j] = angle_of(found->second[j], unit, joint);
-    if (!std::isfinite(q[j]) || q[j] < joint.lower || q[j] > joint.upper)
+    const auto [lower, upper] = joint_range(model, k);
+    q[j] = angle_of(found->second[j], unit, lower, upper);
+    if (!std::isfinite(q[j]) || q[j] < lower || q[j] > upper)
       throw InputError(fmt::format("{}: posture {}, joint {} = {:g} rad (allowed: {:g} to {:g} rad, finite)", file, posture, names[j], q[j],
-                                   joint.lower, joint.upper));
+                                   lower, upper));
   }
   return q;
 }

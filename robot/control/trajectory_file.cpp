@@ -79,6 +79,17 @@ JointTrajectory read_trajectory(const std::filesystem::path& file, const RobotMo
   return read_rows(motion, table);
 }
 
+std::vector<std::string> joints_in_header(const std::filesystem::path& file) {
+  const RobotModel none;
+  MotionFile motion(file, none, {}, {});
+  read_header_line(motion, file);
+  std::vector<std::string> names;
+  for (const std::string_view cell : cells_of(motion.line()))
+    if (cell != "time_s") names.emplace_back(trimmed(cell.substr(0, cell.rfind('['))));
+  if (names.empty()) motion.fail("the header names no joint");
+  return names;
+}
+
 JointTrajectory read_table(const std::filesystem::path& file, const RobotModel& model, const std::string& time,
                            const std::vector<DrivenByColumn>& joints, const TrajectoryFileOptions& options) {
   std::vector<std::string> names;

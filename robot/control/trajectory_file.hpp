@@ -20,6 +20,9 @@ struct TrajectoryFileOptions {
 JointTrajectory read_trajectory(const std::filesystem::path& file, const RobotModel& model, const std::vector<std::string>& joints,
                                 const TrajectoryFileOptions& options = {});
 
+/// Names of the joints that such a file's header has.  @throws InputError if it has none
+std::vector<std::string> joints_in_header(const std::filesystem::path& file);
+
 /// A joint that a column of somebody else's file drives: q = scale * value + offset.
 struct DrivenByColumn {
   std::string joint;   ///< of the model

@@ -60,4 +60,11 @@ JointMap joint_map(const RobotModel& model) {
   }
   return result;
 }
+
+std::pair<Real, Real> joint_range(const RobotModel& model, int joint) {
+  const JointMap map = joint_map(model);
+  const auto u = std::ranges::find(map.independent, joint) - map.independent.begin();
+  const Joint& own = model.joints[static_cast<std::size_t>(joint)];
+  return u < map.lower.size() ? std::pair(map.lower[u], map.upper[u]) : std::pair(own.lower, own.upper);
+}
 }  // namespace robot

@@ -18,4 +18,7 @@ struct JointMap {
 /// @throws InputError naming the joint if it follows none of the model's, if joints follow each other in a circle, or if limits leave no
 /// position to a joint
 JointMap joint_map(const RobotModel& model);
+
+/// [rad or m] between which a joint may be told to be; of one that others follow, so that they are within their limits too.
+std::pair<Real, Real> joint_range(const RobotModel& model, int joint);
 }  // namespace robot

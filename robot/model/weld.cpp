@@ -48,6 +48,8 @@ RobotModel weld(const RobotModel& robot, const std::string& frame, const RobotMo
   for (const Frame& f : tool.frames) out.frames.push_back({f.name, link(f.link), f.link == 0 ? Pose(X_LT * f.X_LF) : f.X_LF});
   for (const auto& [a, b] : tool.may_overlap) out.may_overlap.emplace_back(link(a), link(b));
   out.notes.insert(out.notes.end(), tool.notes.begin(), tool.notes.end());
+  if (base.inertial.mass == 0 && !(base.visual.empty() && base.collision.empty()))
+    out.notes.push_back(tool.name + ": no inertia is given for its base " + base.name + "; it adds none");
   out.notes.push_back(tool.name + " is welded to " + frame);
   return out;
 }

@@ -37,7 +37,8 @@ std::vector<fs::path> folders_upward(const fs::path& urdf) {
 
 std::vector<fs::path> package_candidates(const std::string& path, const fs::path& urdf, const fs::path& package_root) {
   const std::size_t slash = std::min(path.find('/'), path.size());
-  const fs::path name = path.substr(0, slash), rest = path.substr(std::min(slash + 1, path.size()));
+  const std::size_t after = std::min(path.find_first_not_of('/', slash), path.size());
+  const fs::path name = path.substr(0, slash), rest = path.substr(after);
   std::vector<fs::path> candidates;
   if (!package_root.empty()) candidates = {package_root / name / rest, package_root / rest};
   const std::vector<fs::path> upward = folders_upward(urdf);

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "robot/kinematics/joint_map.hpp"
 #include "robot/model/convex_hull.hpp"
 #include "robot/model/inertia.hpp"
 #include "robot/model/primitives.hpp"
@@ -72,11 +73,24 @@ class Builder {
     for (std::size_t j = 0; j < model_.joints.size(); ++j) model_.joints[j].mimic = find_leader(model_.joints[j].name);
     add_overlaps();
     add_list("taken as unlimited, because they are missing or 0", document_.unlimited);
+    add_narrowed();
     return std::move(model_);
   }
 
  private:
   [[noreturn]] void fail(const std::string& reason) const { throw InputError(file_.string() + ": " + reason); }
+
+  /// A joint that others follow may stand only where these are within their limits too.
+  void add_narrowed() {
+    const JointMap map = joint_map(model_);
+    for (std::size_t u = 0; u < map.independent.size(); ++u) {
+      const Joint& joint = model_.joints[static_cast<std::size_t>(map.independent[u])];
+      const Real lower = map.lower[static_cast<Eigen::Index>(u)], upper = map.upper[static_cast<Eigen::Index>(u)];
+      if (lower > joint.lower || upper < joint.upper)
+        model_.notes.push_back(fmt::format("joint {} has only {:g} to {:g} of its {:g} to {:g}, by the limits of joints that follow it{}",
+                                           joint.name, lower, upper, joint.lower, joint.upper, lower == upper ? ": it cannot move" : ""));
+    }
+  }
 
   void add_list(const std::string& what, const std::vector<std::string>& items) {
     if (!items.empty()) model_.notes.push_back(fmt::format("{}: {}", what, fmt::join(items, ", ")));
@@ -86,7 +100,7 @@ class Builder {
   void add_link(const urdf::Link& link, int index, const Pose& X_LU) {
     Link& body = model_.links[static_cast<std::size_t>(index)];
     if (link.inertial) {
-      body.inertial = combined(body.inertial, moved(X_LU, checked(*link.inertial, link.name)));
+      body.inertial = combined(body.inertial, moved(X_LU, checked(*link.inertial, link.name, link.name != body.name)));
     } else if (!link.visual_array.empty() || !link.collision_array.empty()) {
       without_inertia_[index].push_back(link.name);
     }
@@ -142,9 +156,11 @@ class Builder {
   }
 
   /// In the frame of its link.
-  Inertial checked(const urdf::Inertial& from, const std::string& link) {
+  /// @param merged  into another: it may be a mass in a point
+  Inertial checked(const urdf::Inertial& from, const std::string& link, bool merged) {
     Mat3 inertia;
     inertia << from.ixx, from.ixy, from.ixz, from.ixy, from.iyy, from.iyz, from.ixz, from.iyz, from.izz;
+    if (merged && inertia.isZero(0)) return moved(pose(from.origin), {from.mass, Vec3::Zero(), inertia});
     const Vec3 m = principal_moments(inertia);
     const std::string said = fmt::format("link '{}', inertia: principal moments = {}, {}, {} kg m^2", link, m[0], m[1], m[2]);
     if (m[0] <= 0) fail(said + ": allowed is > 0 each");
@@ -210,10 +226,11 @@ class Builder {
   }
 
   std::vector<std::pair<std::string, std::string>> disabled_pairs() const {
-    if (!options_.srdf.empty()) return read_disabled_collisions(options_.srdf);
-    std::filesystem::path beside = file_;
-    if (std::filesystem::exists(beside.replace_extension(".srdf"))) return read_disabled_collisions(beside);
-    return {};
+    std::filesystem::path srdf = options_.srdf;
+    if (srdf.empty() && !std::filesystem::exists(srdf = std::filesystem::path(file_).replace_extension(".srdf"))) return {};
+    std::vector<std::string> links;
+    for (const auto& [name, link] : urdf_->links_) links.push_back(name);
+    return read_disabled_collisions(srdf, links);
   }
 
   std::filesystem::path file_;

@@ -3,21 +3,37 @@
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
+#include <set>
+
 #include "robot/model/robot_model.hpp"
 
 namespace robot {
-std::vector<std::pair<std::string, std::string>> read_disabled_collisions(const std::filesystem::path& file) {
+std::vector<std::pair<std::string, std::string>> read_disabled_collisions(const std::filesystem::path& file,
+                                                                          const std::vector<std::string>& links) {
   tinyxml2::XMLDocument xml;
   if (xml.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS)
     throw InputError(fmt::format("{}:{}: cannot be read as SRDF: {}", file.string(), xml.ErrorLineNum(), xml.ErrorStr()));
   const auto* robot = xml.FirstChildElement("robot");
   if (!robot) throw InputError(file.string() + ": no SRDF file: it has no element <robot>");
-  std::vector<std::pair<std::string, std::string>> pairs;
-  for (const auto* e = robot->FirstChildElement("disable_collisions"); e; e = e->NextSiblingElement("disable_collisions")) {
-    const char *a = e->Attribute("link1"), *b = e->Attribute("link2");
-    if (!a || !b) throw InputError(fmt::format("{}:{}: <disable_collisions> needs link1 and link2", file.string(), e->GetLineNum()));
-    pairs.emplace_back(a, b);
-  }
-  return pairs;
+  std::set<std::pair<std::string, std::string>> pairs;
+  const auto each = [&](const char* tag, std::initializer_list<const char*> attributes, const auto& visit) {
+    for (const auto* e = robot->FirstChildElement(tag); e; e = e->NextSiblingElement(tag)) {
+      std::vector<std::string> names;
+      for (const char* attribute : attributes) {
+        const char* name = e->Attribute(attribute);
+        if (!name)
+          throw InputError(fmt::format("{}:{}: <{}> needs {}", file.string(), e->GetLineNum(), tag, fmt::join(attributes, " and ")));
+        names.emplace_back(name);
+      }
+      visit(names);
+    }
+  };
+  each("disable_default_collisions", {"link"}, [&](const auto& names) {
+    for (const std::string& other : links)
+      if (other != names[0]) pairs.insert(std::minmax(names[0], other));
+  });
+  each("enable_collisions", {"link1", "link2"}, [&](const auto& names) { pairs.erase(std::minmax(names[0], names[1])); });
+  each("disable_collisions", {"link1", "link2"}, [&](const auto& names) { pairs.insert(std::minmax(names[0], names[1])); });
+  return {pairs.begin(), pairs.end()};
 }
 }  // namespace robot

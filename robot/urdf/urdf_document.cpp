@@ -21,11 +21,11 @@ using tinyxml2::XMLElement;
 struct NumberRule {
   std::string_view element, attribute;
   std::size_t count;
-  enum class Range { any, not_negative, positive, not_zero, fraction } range = Range::any;
+  enum class Range { any, not_negative, positive, not_zero, place } range = Range::any;
 };
 using enum NumberRule::Range;
 constexpr NumberRule kNumbers[] = {
-    {"origin", "xyz", 3},
+    {"origin", "xyz", 3, place},
     {"origin", "rpy", 3},
     {"axis", "xyz", 3},
     {"mass", "value", 1, positive},
@@ -48,7 +48,35 @@ constexpr NumberRule kNumbers[] = {
     {"cylinder", "length", 1, positive},
     {"sphere", "radius", 1, positive},
     {"mesh", "scale", 3, not_zero},
-    {"color", "rgba", 4, fraction},
+};
+
+/// What is read of an element: its attributes, and the elements in it.
+struct Reading {
+  std::set<std::string_view> attributes, children;
+};
+const std::map<std::string_view, Reading> kReadings = {
+    {"link", {{"name"}, {"inertial", "visual", "collision"}}},
+    {"joint", {{"name", "type"}, {"origin", "parent", "child", "axis", "limit", "dynamics", "mimic"}}},
+    {"inertial", {{}, {"origin", "mass", "inertia"}}},
+    {"visual", {{"name"}, {"origin", "geometry", "material"}}},
+    {"collision", {{"name"}, {"origin", "geometry"}}},
+    {"geometry", {{}, {"box", "cylinder", "sphere", "mesh"}}},
+    {"material", {{"name"}, {"color", "texture"}}},
+    {"texture", {{"filename"}, {}}},
+    {"color", {{"rgba"}, {}}},
+    {"origin", {{"xyz", "rpy"}, {}}},
+    {"mass", {{"value"}, {}}},
+    {"inertia", {{"ixx", "ixy", "ixz", "iyy", "iyz", "izz"}, {}}},
+    {"parent", {{"link"}, {}}},
+    {"child", {{"link"}, {}}},
+    {"axis", {{"xyz"}, {}}},
+    {"limit", {{"lower", "upper", "effort", "velocity"}, {}}},
+    {"dynamics", {{"damping", "friction"}, {}}},
+    {"mimic", {{"joint", "multiplier", "offset"}, {}}},
+    {"box", {{"size"}, {}}},
+    {"cylinder", {{"radius", "length"}, {}}},
+    {"sphere", {{"radius"}, {}}},
+    {"mesh", {{"filename", "scale"}, {}}},
 };
 
 const char* range_text(NumberRule::Range range) {
@@ -59,8 +87,8 @@ const char* range_text(NumberRule::Range range) {
       return "> 0";
     case not_zero:
       return "a finite number other than 0";
-    case fraction:
-      return "0 to 1";
+    case place:
+      return "-10000 to 10000";
     case any:
       break;
   }
@@ -75,8 +103,8 @@ bool contains(NumberRule::Range range, Real value) {
       return std::isfinite(value) && value > 0;
     case not_zero:
       return std::isfinite(value) && value != 0;
-    case fraction:
-      return value >= 0 && value <= 1;
+    case place:
+      return std::fabs(value) <= 1e4;
     case any:
       break;
   }
@@ -121,9 +149,15 @@ class Reader {
     check_names();
     for (const char* tag : {"link", "joint", "material"}) each_child(*robot_, tag, [&](XMLElement& e) { refuse_xacro(e); });
     each_child(*robot_, "joint", [&](XMLElement& joint) { check_type(joint); });
+    for (const char* tag : {"link", "joint"})
+      each_child(*robot_, tag, [&](XMLElement& e) { look_for_unread(e, std::string(text_of(e, "name"))); });
+    for (const auto& [what, owners] : unread_)
+      document_.notes.push_back(
+          fmt::format("not read: {}, in {}{}", what, owners[0], owners.size() > 1 ? fmt::format(" and {} more", owners.size() - 1) : ""));
     check_tree();
     drop_empty_inertials();
     complete_inertias();
+    each_child(*robot_, "joint", [&](XMLElement& joint) { complete_joint(joint); });
     for (const char* tag : {"link", "joint", "material"}) each_child(*robot_, tag, [&](XMLElement& e) { check_numbers(e); });
     each_child(*robot_, "joint", [&](XMLElement& joint) { check_motion(joint); });
     drop_bad_materials();
@@ -178,6 +212,18 @@ class Reader {
     }
   }
 
+  /// A slip of the pen, or another program's.
+  void look_for_unread(const XMLElement& element, const std::string& owner) {
+    const Reading& reading = kReadings.at(element.Name());
+    for (const auto* a = element.FirstAttribute(); a; a = a->Next())
+      if (!reading.attributes.contains(a->Name())) unread_[fmt::format("attribute {} of <{}>", a->Name(), element.Name())].push_back(owner);
+    for (const XMLElement* e = element.FirstChildElement(); e; e = e->NextSiblingElement())
+      if (reading.children.contains(e->Name()))
+        look_for_unread(*e, owner);
+      else
+        unread_[fmt::format("<{}> of <{}>", e->Name(), element.Name())].push_back(owner);
+  }
+
   void check_type(XMLElement& joint) {
     const std::string_view type = text_of(joint, "type");
     if (type == "fixed")
@@ -201,10 +247,11 @@ class Reader {
                                 text_of(*above, "name")));
       above = &joint;
     });
-    std::string roots;
+    std::vector<std::string> roots;
     for (const auto& [link, above] : joint_above)
-      if (!above) roots += (roots.empty() ? "'" : ", '") + link + "'";
-    if (roots.find(',') != roots.npos) throw InputError(fmt::format("{}: more than one root: links {} hang on no joint", file_, roots));
+      if (!above) roots.push_back(link);
+    if (roots.size() > 1)
+      throw InputError(fmt::format("{}: more than one root: links '{}' hang on no joint", file_, fmt::join(roots, "', '")));
     for (const auto& [link, above] : joint_above) {
       std::set<std::string> passed;
       const XMLElement* joint = above;
@@ -241,6 +288,19 @@ class Reader {
             if (!inertia.Attribute(term)) inertia.SetAttribute(term, "0");
         });
       });
+    });
+  }
+
+  /// An axis without numbers is x; a limit that is infinite is none.
+  void complete_joint(XMLElement& joint) {
+    each_child(joint, "axis", [&](XMLElement& axis) {
+      if (!axis.Attribute("xyz")) axis.SetAttribute("xyz", "1 0 0");
+    });
+    each_child(joint, "limit", [&](XMLElement& limit) {
+      for (const char* quantity : {"effort", "velocity"})
+        if (const auto value = numbers(std::string(text_of(limit, quantity)).c_str());
+            value && value->size() == 1 && std::isinf(value->front()))
+          limit.SetAttribute(quantity, "0");
     });
   }
 
@@ -281,9 +341,17 @@ class Reader {
       }
   }
 
-  /// urdfdom refuses robots for them.
+  /// Those that nothing defines, and those whose colour is none: urdfdom refuses robots for them.
   void drop_bad_materials() {
-    const auto defined = [](const XMLElement& m) { return m.FirstChildElement("color") || m.FirstChildElement("texture"); };
+    const auto coloured = [](const XMLElement& color) {
+      const auto rgba = numbers(text_of(color, "rgba").data());
+      return rgba && rgba->size() == 4 && std::ranges::all_of(*rgba, [](Real value) { return value >= 0 && value <= 1; });
+    };
+    const auto defined = [&](XMLElement& m) {
+      if (!m.Attribute("name")) m.SetAttribute("name", "");
+      const XMLElement* color = m.FirstChildElement("color");
+      return color ? coloured(*color) : m.FirstChildElement("texture") != nullptr;
+    };
     std::set<std::string_view> names;
     each_child(*robot_, "material", [&](XMLElement& m) {
       if (!defined(m) || !names.insert(text_of(m, "name")).second) robot_->DeleteChild(&m);
@@ -293,7 +361,7 @@ class Reader {
         each_child(visual, "material", [&](XMLElement& m) {
           if (defined(m))
             names.insert(text_of(m, "name"));
-          else if (!names.contains(text_of(m, "name")))
+          else if (m.FirstChildElement() || !names.contains(text_of(m, "name")))
             visual.DeleteChild(&m);
         });
       });
@@ -304,6 +372,7 @@ class Reader {
   tinyxml2::XMLDocument xml_;
   XMLElement* robot_ = nullptr;
   UrdfDocument document_;
+  std::map<std::string, std::vector<std::string>> unread_;  // by whom it is owned
 };
 }  // namespace
 

@@ -15,7 +15,8 @@ struct UrdfDocument {
 /// Refused: what is no XML or no robot, xacro that is not expanded, numbers that are none or out of range, duplicate names, joints that
 /// name unknown links or cannot move, more than one root, loops, revolute and prismatic joints without limits. Tidied: white space and
 /// signs of numbers; what fixed joints say about motion, and the inertia of links that hang on them if all of it is 0; off-diagonal terms
-/// of inertias that are left out; materials that are not defined, or defined again.
+/// of inertias that are left out; axes without numbers; limits that are infinite; materials that are not defined, defined again, or of no
+/// colour. Noted: what stands in links and joints and is not read.
 /// @throws InputError naming file, line, element, value and what is allowed
 UrdfDocument read_document(const std::filesystem::path& file);
 }  // namespace robot

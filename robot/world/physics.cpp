@@ -106,6 +106,7 @@ class Physics::BulletWorld : public btMultiBodyDynamicsWorld {
     for (int pass = 0; again; ++pass) {
       again = false;
       clearMultiBodyConstraintForces();
+      physics_.unsettled += pass == kReleasing;
       for (const auto& robot : physics_.robots_) robot->move_freely();
       solve(info);
       for (const auto& robot : physics_.robots_) again |= robot->update_active_sets(pass < kReleasing);
@@ -169,21 +170,35 @@ void Physics::substep(Real h, const std::vector<VecX>& tau) {
   for (const auto& robot : robots_) robot->end();
 }
 
+std::vector<Contact> Physics::overlaps() {
+  forget_contacts();
+  world_->performDiscreteCollisionDetection();
+  std::vector<Contact> found = points(1);
+  std::erase_if(found, [](const Contact& c) { return c.distance >= 0; });
+  std::ranges::sort(found, {}, &Contact::distance);
+  return found;
+}
+
 std::vector<Contact> Physics::contacts(Real h) const {
-  std::vector<Contact> contacts;
+  std::vector<Contact> found = points(h);
+  std::erase_if(found, [](const Contact& c) { return c.force.isZero(0); });
+  return found;
+}
+
+std::vector<Contact> Physics::points(Real h) const {
+  std::vector<Contact> points;
   for (int m = 0; m < dispatcher_->getNumManifolds(); ++m) {
     const btPersistentManifold& manifold = *dispatcher_->getManifoldByIndexInternal(m);
     const auto [robot_a, link_a] = id(*manifold.getBody0());
     const auto [robot_b, link_b] = id(*manifold.getBody1());
     for (int i = 0; i < manifold.getNumContacts(); ++i) {
       const btManifoldPoint& p = manifold.getContactPoint(i);
-      if (p.m_appliedImpulse == 0) continue;
       const btVector3 impulse = p.m_appliedImpulse * p.m_normalWorldOnB + p.m_appliedImpulseLateral1 * p.m_lateralFrictionDir1 +
                                 p.m_appliedImpulseLateral2 * p.m_lateralFrictionDir2;
-      contacts.push_back({robot_a, link_a, robot_b, link_b, from_bullet(p.getPositionWorldOnB()), from_bullet(p.m_normalWorldOnB),
-                          from_bullet(impulse) / h, p.getDistance()});
+      points.push_back({robot_a, link_a, robot_b, link_b, from_bullet(p.getPositionWorldOnB()), from_bullet(p.m_normalWorldOnB),
+                        from_bullet(impulse) / h, p.getDistance()});
     }
   }
-  return contacts;
+  return points;
 }
 }  // namespace robot

@@ -22,12 +22,15 @@ class Physics {
   /// Pairs of links that never touch, each sorted.
   std::set<std::pair<LinkId, LinkId>> apart;
   std::vector<Contact> contacts(Real h) const;
+  std::vector<Contact> overlaps();
+  int unsettled = 0;  ///< substeps so far in which drives' limits, joints' friction and contacts did not agree
 
  private:
   class Dispatcher;
   class Solver;
   class BulletWorld;
   void forget_contacts();
+  std::vector<Contact> points(Real h) const;
   WorldParams params_;
   std::unique_ptr<btDefaultCollisionConfiguration> configuration_;
   std::unique_ptr<Dispatcher> dispatcher_;

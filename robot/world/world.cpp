@@ -13,7 +13,7 @@ void require(bool good, const std::string& what, Real value, const char* range) 
 }
 const WorldParams& checked(const WorldParams& p) {
   require(p.gravity.allFinite(), "gravity", p.gravity.norm(), "finite [m/s^2]");
-  require(p.substep > 0 && p.substep <= 0.1, "substep", p.substep, "(0, 0.1] s");
+  require(p.substep >= 1e-6 && p.substep <= 0.1, "substep", p.substep, "[1e-6, 0.1] s");
   require(p.iterations >= 1, "iterations", p.iterations, ">= 1");
   require(p.contact_erp >= 0 && p.contact_erp <= 1, "contact_erp", p.contact_erp, "[0, 1]");
   require(p.limit_erp >= 0 && p.limit_erp <= 1, "limit_erp", p.limit_erp, "[0, 1]");
@@ -100,6 +100,7 @@ void World::step(Real dt, const std::vector<VecX>& tau, const std::function<void
       throw InputError("robot " + model(robot).name + ": an external force needs one finite number for each degree of freedom");
     impl_->at(robot).drive_impulse.setZero();
   }
+  impl_->physics.unsettled = 0;
   const int count = substeps(dt, impl_->params.substep);
   const Real h = dt / count;
   for (int s = 0; s < count; ++s) {
@@ -134,6 +135,7 @@ void World::restore(const Snapshot& snapshot) {
   }
   impl_->last_dt = 0;
   impl_->contacts.clear();
+  impl_->physics.unsettled = 0;
 }
 
 Pose World::link_pose(int robot, int link) const { return impl_->at(robot).body().X_WL(link); }
@@ -170,4 +172,6 @@ VecX World::drive_effort(int robot) const {
 VecX World::effort_limit(int robot) const { return impl_->at(robot).drives().limits(); }
 std::vector<int> World::saturation(int robot) const { return impl_->at(robot).drives().saturation(); }
 std::vector<Contact> World::contacts() const { return impl_->contacts; }
+std::vector<Contact> World::overlaps() const { return impl_->physics.overlaps(); }
+int World::unsettled_substeps() const { return impl_->physics.unsettled; }
 }  // namespace robot

@@ -73,7 +73,7 @@ class World {
   /// @param before  called before each substep with the time [s] since the start at which it ends: it may command
   void step(Real dt, const std::vector<VecX>& tau = {}, const std::function<void(Real)>& before = {});
   Snapshot save() const;
-  /// What is reported of the last step (drive_effort, contacts) is not kept.
+  /// What is reported of the last step (drive_effort, contacts, unsettled_substeps) is not kept.
   void restore(const Snapshot& snapshot);
 
   Pose link_pose(int robot, int link) const;
@@ -101,6 +101,11 @@ class World {
   /// [nj] -1, 0 or 1: the effort limit at which each drive stood in the last substep.
   std::vector<int> saturation(int robot) const;
   std::vector<Contact> contacts() const;
+  /// Where links that may touch are inside each other as they stand, without forces, the deepest point first.
+  std::vector<Contact> overlaps() const;
+  /// Substeps of the last step in which drives' limits, joints' friction and contacts did not agree, so that joints may only slip and
+  /// drives may only stand at their limits (README.md).
+  int unsettled_substeps() const;
 
  private:
   struct Impl;

@@ -34,6 +34,12 @@ TEST(TrajectoryFile, ColumnsComeInTheOrderAskedForAndInRadiansAndMetres) {
   EXPECT_EQ(path.knots[0][1], 0.25);
 }
 
+TEST(TrajectoryFile, SpreadsheetsMarkTheOrderOfBytesFirst) {
+  const test::TextFile file("\xEF\xBB\xBFtime_s,slide [m],swing [rad]\n0,0.1,0.2\n0.05,0.1,0.2\n");
+  EXPECT_EQ(joints_in_header(file), (std::vector<std::string>{"slide", "swing"}));
+  EXPECT_EQ(read_trajectory(file, crane(), joints_in_header(file)).knots[0], Eigen::Vector2d(0.1, 0.2));
+}
+
 TEST(TrajectoryFile, BetweenRowsPositionsAreLinearAndVelocityIsTheirDifference) {
   const JointTrajectory path = read("time_s,swing [rad],slide [m]\n0,0,0\n0.04,0.2,-0.1\n0.08,1,0\n");
   const auto point = path.at(0.05);

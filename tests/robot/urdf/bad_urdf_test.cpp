@@ -47,7 +47,15 @@ TEST(BadUrdf, MassesAndInertiasOfNoBodyAreRefused) {
   EXPECT_THAT(refusal(one_joint(kLimit, R"(<inertial><mass value="1"/></inertial>)")), HasSubstr("no valid URDF"));
 }
 
+TEST(BadUrdf, WhatIsNotReadIsNoted) {
+  const RobotModel model = read_text(one_joint(R"(<axs xyz="0 0 1"/><limit lower="-1" upper="1" efort="3" effort="1" velocity="1"/>)"));
+  EXPECT_THAT(model.notes, testing::ElementsAre("not read: <axs> of <joint>, in elbow", "not read: attribute efort of <limit>, in elbow"));
+  EXPECT_THAT(refusal(one_joint(R"(<origin xyz="0 0 1e300"/>)" + limit("-1", "1"))),
+              HasSubstr("xyz = \"0 0 1e300\": allowed is 3 numbers, each -10000 to 10000"));
+}
+
 TEST(BadUrdf, ATreeIsAsked) {
+  EXPECT_EQ(read_text(link_text("base, left") + link_text("b") + joint_text("j", "continuous", "base, left", "b")).joints.size(), 1u);
   EXPECT_THAT(refusal(kThree + joint_text("j", "fixed", "a", "b")), HasSubstr("more than one root: links 'a', 'c' hang on no joint"));
   EXPECT_THAT(
       refusal(kThree + joint_text("j1", "fixed", "a", "b") + joint_text("j2", "fixed", "b", "c") + joint_text("j3", "fixed", "c", "a")),
@@ -104,11 +112,6 @@ TEST(BadUrdf, ShapesOfNoSizeAreRefused) {
   EXPECT_THAT(refusal(shape(R"(<mesh filename="m.stl" scale="1 0 1"/>)")), HasSubstr("mesh: scale"));
   EXPECT_THAT(refusal(shape(R"(<blob/>)")), HasSubstr("blob"));
   EXPECT_THAT(refusal(shape("")), HasSubstr("no valid URDF"));
-}
-
-TEST(BadUrdf, ColoursBeyondOneAreRefused) {
-  EXPECT_THAT(refusal(R"(<material name="m"><color rgba="255 0 0 1"/></material>)" + link_text("a")),
-              HasSubstr("material 'm', color: rgba = \"255 0 0 1\": allowed is 4 numbers, each 0 to 1"));
 }
 
 TEST(BadUrdf, WhatXacroLeftIsRefused) {

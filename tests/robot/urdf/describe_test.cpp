@@ -36,6 +36,7 @@ mass: 3 kg in all
 reach: hook is farthest from the base at q = 0, 2.256 m; no frame gets beyond 3.8 m, the length of the path to hook
 pairs of links that may overlap: 3
 note: taken as unlimited, because they are missing or 0: effort of spin, velocity of spin
+note: joint spin has only -0.95 to 0.55 of its -inf to inf, by the limits of joints that follow it
 )");
 }
 

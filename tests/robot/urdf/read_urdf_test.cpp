@@ -234,6 +234,42 @@ TEST(ReadUrdf, MaterialsThatAreUndefinedOrDefinedTwiceDoNoHarm) {
   const RobotModel model =
       read_text(red + red + link_text("base", R"(<visual><geometry><sphere radius="1"/></geometry><material name="blue"/></visual>)"));
   EXPECT_EQ(model.links[0].visual[0].color, Shape{}.color);
+  for (const char* color : {"255 0 0 1", "1 0 0", "red"}) {
+    const std::string bad = std::string("<material name=\"m\"><color rgba=\"") + color + "\"/></material>";
+    const std::string visual = "<visual><geometry><sphere radius=\"1\"/></geometry>";
+    const RobotModel without = read_text(bad + link_text("base", visual + bad + "</visual>" + visual + "<material name=\"m\"/></visual>"));
+    for (const Shape& shape : without.links[0].visual) EXPECT_EQ(shape.color, Shape{}.color) << color;
+  }
+}
+
+TEST(ReadUrdf, APointMassOnAFixedJointAddsItsMass) {
+  const std::string point =
+      R"(<inertial><origin xyz="0 0 1"/><mass value="1"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial>)";
+  const RobotModel model = read_text(link_text("base") + link_text("arm") + link_text("tool", point) +
+                                     joint_text("elbow", "revolute", "base", "arm", kLimit) + joint_text("end", "fixed", "arm", "tool"));
+  EXPECT_EQ(model.links[1].inertial.mass, 2);
+  EXPECT_NEAR(model.links[1].inertial.com.z(), 0.5, 1e-15) << "the other kilogram stands at the origin";
+  EXPECT_THAT(refusal(one_joint(kLimit, point)), HasSubstr("link 'arm', inertia: principal moments = 0, 0, 0"));
+}
+
+TEST(ReadUrdf, AnAxisWithoutNumbersIsXAndAnInfiniteLimitIsNone) {
+  const RobotModel model =
+      read_text(link_text("a") + link_text("b") +
+                joint_text("j", "revolute", "a", "b", R"(<axis/><limit lower="-1" upper="1" effort="inf" velocity="inf"/>)"));
+  EXPECT_EQ(model.joints[0].axis, Vec3::UnitX());
+  EXPECT_EQ(model.joints[0].effort, kInf);
+  EXPECT_EQ(model.joints[0].velocity, kInf);
+}
+
+TEST(ReadUrdf, AJointThatItsFollowersHoldBackIsNoted) {
+  const auto with = [](const std::string& mimic) {
+    return read_text(link_text("a") + link_text("b") + link_text("c") +
+                     joint_text("lead", "revolute", "a", "b", R"(<limit lower="0" upper="0.8" effort="1" velocity="1"/>)") +
+                     joint_text("tip", "revolute", "b", "c", R"(<limit lower="0" upper="0.4" effort="1" velocity="1"/>)" + mimic));
+  };
+  EXPECT_THAT(with(R"(<mimic joint="lead" multiplier="0.5"/>)").notes, IsEmpty());
+  EXPECT_THAT(with(R"(<mimic joint="lead"/>)").notes, ElementsAre(HasSubstr("joint lead has only 0 to 0.4 of its 0 to 0.8")));
+  EXPECT_THAT(with(R"(<mimic joint="lead" multiplier="-1"/>)").notes, ElementsAre(HasSubstr("it cannot move")));
 }
 
 TEST(ReadUrdf, NeighboursAndWhatTheSrdfFileNamesMayOverlap) {
@@ -252,6 +288,9 @@ TEST(ReadUrdf, NeighboursAndWhatTheSrdfFileNamesMayOverlap) {
   const RobotModel model = read_urdf(urdf, options);
   EXPECT_EQ(model.may_overlap, (Pairs{{0, 1}, {0, 3}, {1, 2}, {2, 3}}));
   EXPECT_THAT(model.notes, Contains("the SRDF file names links that the robot does not have: ghost"));
+  options.srdf = folder.write("two.srdf", R"(<robot name="r"><disable_default_collisions link="d"/>
+    <enable_collisions link1="b" link2="d"/></robot>)");
+  EXPECT_EQ(read_urdf(urdf, options).may_overlap, (Pairs{{0, 1}, {0, 3}, {1, 2}, {2, 3}})) << "d with all but b";
   folder.write("r.srdf", srdf);  // beside the URDF file
   EXPECT_EQ(read_urdf(urdf).may_overlap, model.may_overlap);
 }

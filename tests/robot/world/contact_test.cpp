@@ -44,6 +44,22 @@ TEST(Contact, ABoxRestsOnATable) {
   EXPECT_LT((force - Vec3(0, 0, 0.3 * 9.81)).norm(), 0.005 * 0.3 * 9.81);
 }
 
+TEST(Contact, OverlapsAreFoundAsThingsStand) {
+  World world;
+  const int table = add_table(world);
+  world.add_robot(box(kBox, 0.3), {.X_WB = at({0.2, 0.1, 0.022}), .fixed_base = false});   // 8 mm inside the table
+  world.add_robot(box(kBox, 0.3), {.X_WB = at({-0.2, 0.1, 0.031}), .fixed_base = false});  // 1 mm above it
+  const std::vector<Contact> overlaps = world.overlaps();
+  ASSERT_FALSE(overlaps.empty());
+  EXPECT_NEAR(overlaps[0].distance, -0.008, 2e-4) << "edges are rounded by 0.1 mm";
+  for (const Contact& c : overlaps) {
+    EXPECT_EQ(std::minmax(c.robot_a, c.robot_b), std::minmax(table, 1));
+    EXPECT_TRUE(c.force.isZero(0));
+  }
+  world.set_contact(table, 0, 1, 0, false);
+  EXPECT_TRUE(world.overlaps().empty());
+}
+
 TEST(Contact, ACylinderStandsAndASphereRests) {
   World world;
   add_table(world);
