@@ -19,19 +19,16 @@ class Roll {
   Real end() const {
     Real last = 0;
     std::vector<std::pair<Real, Real>> layers;  // [m] inner and outer place of pairs of tape
-    EffectMemory memory = state_.memory;
-    for_each_memory(memory, [&](const auto& pairs) {
-      for (const auto& pair : pairs) {
-        if (pair.engagement(adhesion_of(world_, pair)) == 0) continue;
-        const Index3& face = world_.assembly.triangles[static_cast<std::size_t>(pair.triangle)];
-        const int vertex = sticking_vertices(world_, pair)[0];
-        if (!part(vertex) || !part(face[0])) continue;
-        const auto [inner, outer] = std::minmax({along(vertex), start_of(face)});
-        if (tape(vertex) && tape(face[0]))
-          layers.emplace_back(inner, outer);
-        else
-          last = std::max(last, outer);
-      }
+    for_each_remembered(state_, [&](const auto& pair) {
+      if (pair.engagement(adhesion_of(world_, pair)) == 0) return;
+      const Index3& face = world_.assembly.triangles[static_cast<std::size_t>(pair.triangle)];
+      const int vertex = sticking_vertices(world_, pair)[0];
+      if (!part(vertex) || !part(face[0])) return;
+      const auto [inner, outer] = std::minmax({along(vertex), start_of(face)});
+      if (tape(vertex) && tape(face[0]))
+        layers.emplace_back(inner, outer);
+      else
+        last = std::max(last, outer);
     });
     std::ranges::sort(layers);
     for (const auto& [inner, outer] : layers)

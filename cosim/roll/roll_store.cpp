@@ -60,7 +60,7 @@ std::filesystem::path roll_store() {
 
 void settle_rolls(Setup& setup, const RollOptions& options) {
   for (std::size_t s = 0; s < setup.scene.strips.size(); ++s) {
-    if (!holds_together(setup.scene, s)) {
+    if (!holds_together(setup, s)) {
       if (setup.scene.strips[s].winding && !options.asset.empty())
         throw InputError("roll.asset = " + options.asset.string() +
                          ": the tape of this roll does not adhere to itself, so that it starts as wound");

@@ -1,6 +1,7 @@
 #include "cosim/roll/settled_roll.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <sstream>
 #include <type_traits>
 
@@ -52,20 +53,33 @@ std::string first_difference(const std::string& a, const std::string& b) {
   return "it was wound with other settings";
 }
 
-/// Inside a roll everything adheres at once, and slip counts from then on: counted from the start of each step it would never end, for
+/// Inside a roll every pair adheres at once, and slip counts from then on: counted from the start of each step it would never end, for
 /// layers of chords drive each other towards where corner lies on corner.
-void engage(Scene& scene) {
+void engage_pairs(Scene& scene) {
   for (AdhesivePair& pair : scene.adhesives) {
     pair.adhesion.pair.beta0 = 1;
     pair.adhesion.pair.slip = SlipFrom::bonding;
-    pair.adhesion.area.reach = 1;
   }
+}
+/// Area sticks wherever it lies in the contact band.
+Setup with_area_engaged(Setup setup) {
+  for (AdhesivePair& pair : setup.scene.adhesives) pair.adhesion.area.reach = 1;
+  return setup;
 }
 }  // namespace
 
-bool holds_together(const Scene& scene, std::size_t strip) {
-  const Strip& tape = scene.strips.at(strip);
-  return tape.winding && scene.adhesion(tape.material, tape.material).law != AdhesionLaw::none;
+bool holds_together(const Setup& setup, std::size_t strip) {
+  const Strip& tape = strip_of(setup, strip);
+  if (!tape.winding) return false;
+  const AdhesionLaw law = setup.scene.adhesion(tape.material, tape.material).law;
+  bool holds = false;
+  for_each_effect([&]<class T>(std::type_identity<T>) {
+    if constexpr (Remembers<T>) {
+      const auto forced = setup.forced.find(std::string(T::name));
+      holds |= law == T::of_law && (forced == setup.forced.end() || forced->second);
+    }
+  });
+  return holds;
 }
 
 Setup roll_alone(const Setup& setup, std::size_t strip) {
@@ -84,7 +98,7 @@ Setup roll_alone(const Setup& setup, std::size_t strip) {
   for (std::vector<MaterialPair>* pairs : {&scene.frictions, &scene.barriers})
     std::erase_if(*pairs, [&](const MaterialPair& p) { return !inside(p.a) || !inside(p.b); });
   std::erase_if(scene.adhesives, [&](const AdhesivePair& a) { return !inside(a.a) || !inside(a.b); });
-  engage(scene);
+  engage_pairs(scene);
   scene.contact.dhat = full.dhat();
   scene.films = {full.films.at(static_cast<std::size_t>(tape.film))};
   tape.film = 0;
@@ -105,25 +119,31 @@ SettledRoll settle_roll(const Setup& alone, const SettleParams& params) {
   bool other_law = false;
   for (AdhesivePair& pair : cohesive.scene.adhesives) other_law |= pair.adhesion.law != AdhesionLaw::per_pair;
   for (AdhesivePair& pair : cohesive.scene.adhesives) pair.adhesion.law = AdhesionLaw::per_pair;
+  cohesive.forced.erase(std::string(Cohesion::name));
+  const std::string name = "roll '" + alone.scene.strips[0].name + "'";
   SettledRoll roll{World::build(cohesive), {}, {}};
-  const auto run = [&] {
-    roll.state = State::start(roll.world);
+  roll.state = State::start(roll.world);
+  const auto go_on = [&](const SettleParams& how) {
     const std::unique_ptr<Stepper> stepper = make_stepper(Backend::cpu, roll.world);
     const int before = roll.report.steps;
-    SettleParams go_on = params;
-    if (params.go_on) go_on.go_on = [&](int steps, Real speed) { return params.go_on(before + steps, speed); };
-    roll.report = settle(*stepper, roll.state, go_on);
+    SettleParams from_here = how;
+    if (how.go_on) from_here.go_on = [&](int steps, Real speed) { return how.go_on(before + steps, speed); };
+    roll.report = settle(*stepper, roll.state, from_here);
     roll.report.steps += before;
-    const std::string name = "roll '" + alone.scene.strips[0].name + "'";
     if (roll.report.stopped) throw Interrupted(name + ": interrupted while it settled");
     if (!roll.report.failure.empty()) throw NumericalError(name + " does not come to rest: " + roll.report.failure);
   };
-  run();
+  go_on(params);
   if (!other_law) return roll;
   Setup wanted = alone;
   wanted.scene.strips[0].settled = roll.state.x;
+  roll.world = World::build(with_area_engaged(wanted));
+  roll.state = State::start(roll.world);
+  SettleParams one_step = params;
+  one_step.speed = std::numeric_limits<Real>::infinity();
+  go_on(one_step);  // from then on what comes near sticks as its law says: engaged all along, a free end would wind itself up
   roll.world = World::build(wanted);
-  run();
+  go_on(params);
   roll.world.setup.scene.strips[0].settled.clear();
   return roll;
 }

@@ -8,7 +8,7 @@ namespace cosim {
 using namespace tape;
 
 /// Whether strip `strip` of a scene is a roll that adhesion holds together: only such a roll can settle.
-bool holds_together(const Scene& scene, std::size_t strip);
+bool holds_together(const Setup& setup, std::size_t strip);
 
 /// The roll that strip `strip` is, and nothing else: strip 0 and its hub, body 0, which is fixed; at the origin, without gravity; its
 /// interfaces engage fully at once.

@@ -40,6 +40,13 @@ Real energy_tolerance(const World& world) {
     if (body.motion == Motion::driven || body.motion == Motion::linked) return 0.05;
   return 1e-6;
 }
+/// [m] of what is of this material.
+Real half_thickness(const Scene& scene, int material) {
+  for (const Strip& strip : scene.strips)
+    if (strip.material == material) return scene.films[static_cast<std::size_t>(strip.film)].xi;
+  const auto body = std::ranges::find(scene.bodies, material, &Body::material);
+  return body == scene.bodies.end() ? 0 : body->xi;
+}
 /// What tape that sticks by area needs, the worst of all: the mesh must resolve the fold, of radius sqrt(D/2R), and the zone behind the
 /// front that carries load, pi/2 times the length (4 D/k)^(1/4) of a beam on a foundation of the mean stiffness k = strength/final; and the
 /// barrier, which pushes where the tape rests, must have less to give than adhesion.
@@ -55,7 +62,8 @@ void add_peel_conditions(const World& world, std::vector<Condition>& conditions)
       const Film& film = scene.films[static_cast<std::size_t>(strip.film)];
       const Real stiffness = film.plate_stiffness(), cell = cell_length(strip.mesh, film.width);
       const Real zone = std::numbers::pi / 2 * std::pow(4 * stiffness * law.final_opening() / law.strength, 0.25);
-      const Jet barrier = BarrierLaw{scene.kappa(pair.a, pair.b), scene.dhat()}.at(film.xi + law.rest * scene.dhat(), film.xi, 1);
+      const Real xi = film.xi + half_thickness(scene, strip.material == pair.a ? pair.b : pair.a);
+      const Jet barrier = BarrierLaw{scene.kappa(pair.a, pair.b), scene.dhat()}.at(xi + law.rest * scene.dhat(), xi, 1);
       push = std::max(push, -barrier.slope / law.strength);
       given = std::max(given, barrier.value / law.toughness);
       cell_per_fold = std::max(cell_per_fold, cell / std::sqrt(stiffness / (2 * law.toughness)));
@@ -113,6 +121,8 @@ std::vector<Condition> check_conditions(const World& world, const RunLog& log) {
       none("retried_steps", total(log, [](const StepReport& r) { return r.substeps > 1; })),
       none("linear_solves_at_their_limit", total(log, [](const StepReport& r) { return r.linear_failures; })),
       none("ccd_queries_at_their_limit", total(log, [](const StepReport& r) { return r.ccd_capped; })),
+      none("unsettled_substeps", total(log, [](const StepReport& r) { return r.unsettled_substeps; })),
+      at_most("link_mismatch_m", largest(log, [](const StepReport& r) { return r.link_mismatch; }), world.setup.scene.dhat()),
       at_most("stop_error_estimate_m", largest(log, [](const StepReport& r) { return r.stop_error_estimate; }), stop_limit),
       {"min_gap_m", gap, "> 0", gap > 0},
       none("intersections", log.intersections),

@@ -1,5 +1,6 @@
 #include "cosim/run/read_run.hpp"
 
+#include "cosim/roll/settled_roll.hpp"
 #include "cosim/scene/read_scene.hpp"
 
 namespace cosim {
@@ -32,7 +33,12 @@ RunInput read_run(SceneFile scene) {
   const Reader roll = file["roll"];
   input.settle_roll = roll["settle"].flag_or(true);
   const std::optional<Model>& model = input.setup.scene.model;
-  if (!input.settle_roll && model && is_reduced(*model)) roll["settle"].fail("a reduced roll starts from one at rest");
+  if (model && is_reduced(*model)) {
+    if (!input.settle_roll) roll["settle"].fail("a reduced roll starts from one at rest");
+    for (std::size_t s = 0; s < input.setup.scene.strips.size(); ++s)
+      if (input.setup.scene.strips[s].winding && !holds_together(input.setup, s))
+        file["model"].fail("a reduced roll needs tape that adheres to itself (interfaces: [tape.sticky, tape], and its effect not off)");
+  }
   if (const Reader asset = roll["asset"]) {
     if (!input.settle_roll) asset.fail("of no use where settle is off");
     input.roll_asset = file.path().parent_path() / asset.text();

@@ -20,7 +20,7 @@ for episode in "$@"; do
     1) record 1 ;;
     2) record 2 script.3.speed=0.24 script.4.speed=0.17 "roll.position=[0.2454, -0.202, 0.7827]" materials.skin.mu=0.9 ;;
     3) record 3 "roll.position=[0.2474, -0.199, 0.7827]" roll.core.density=1200 script.5.speed=0.12 ;;
-    4) record 4 interfaces.0.toughness=18 interfaces.2.toughness=12 script.3.speed=0.17 ;;
+    4) record 4 interfaces.0.toughness=9 interfaces.2.toughness=12 script.3.speed=0.17 ;;
     5) record 5 "roll.position=[0.2444, -0.201, 0.7827]" materials.abs.mu=0.5 materials.steel.mu=0.25 script.4.speed=0.22 roll.core.density=850 ;;
     *) echo "no episode $episode" >&2 && exit 2 ;;
   esac

@@ -15,7 +15,7 @@ TAPE_HD Cohesion::Element Cohesion::recall(const Memory& m, const ContactPair& p
   const PairCohesion& a = s.adhesion[pair.interface].pair;
   const PairState p = PairState::at(pair, s.x);
   Element e{pair, LaggedSlip::at(pair, p, s.x), m.beta * m.beta * a.cn / dhat, 2 * m.beta * m.beta * a.ct / dhat, pair.xi + dhat / 2};
-  e.lagged.before = e.lagged.recalled(m.slip);
+  if (a.slip == SlipFrom::bonding) e.lagged.before = e.lagged.recalled(m.slip);
   return e;
 }
 TAPE_HD Vec2 Cohesion::slip(const StateView& s, int i) const { return elements[i].lagged.slip(frame, s); }

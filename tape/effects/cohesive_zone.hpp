@@ -30,10 +30,11 @@ struct CohesiveZone {
     Real foot[3];  ///< [1] barycentric coordinates of the point that it sticks to
     Real met[2];   ///< [m^2] c*
     Real worst;    ///< [m] largest opening so far
+    Real share;    ///< [1] of its area that it carries: half where the other side's samples carry the rest
     Real engagement(const Adhesion& a) const { return Zone::at(a.area, worst).secant / Zone::at(a.area, 0).secant; }
     template <class F>
     void visit(F&& f) {
-      f(sample), f(triangle), f(foot[0]), f(foot[1]), f(foot[2]), f(met[0]), f(met[1]), f(worst);
+      f(sample), f(triangle), f(foot[0]), f(foot[1]), f(foot[2]), f(met[0]), f(met[1]), f(worst), f(share);
     }
   };
   /// Traction [Pa] by opening [m]: `secant` delta to the knee, then `softening` (final - delta) to nothing.

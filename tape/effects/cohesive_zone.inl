@@ -33,7 +33,7 @@ TAPE_HD CohesiveZone::Element CohesiveZone::recall(const Memory& m, const Sample
   const AreaCohesion& law = s.adhesion[pair.interface].area;
   Element e{.pair = pair,
             .zone = Zone::at(law, m.worst),
-            .area = pair.area * (m.triangle < triangles ? 0.5 : 1),
+            .area = pair.area * m.share,
             .shear = law.shear,
             .foot = {m.foot[0], m.foot[1], m.foot[2]},
             .inverse_metric = {},
@@ -90,7 +90,10 @@ TAPE_HD bool CohesiveZone::begin(const SamplePair& pair, const StateView& s, Mem
   const Face of_triangle = (x[2] - x[1]).cross(x[3] - x[1]).dot(offset) < 0 ? Face::sticky : Face::backing;
   if (!a.sticks[static_cast<int>(of_sample)][static_cast<int>(of_triangle)]) return false;
   if (!(offset.norm() <= pair.xi + a.area.reach * dhat)) return false;
-  out = {pair.name(), {-closest.weight[1], -closest.weight[2], -closest.weight[3]}, {0, 0}, 0};
+  const bool on_strip = pair.id.triangle < triangles;
+  if (on_strip && of_sample == Face::backing && of_triangle == Face::sticky) return false;  // the other side's samples do it
+  const Real share = on_strip && of_sample == of_triangle ? 0.5 : 1;
+  out = {pair.name(), {-closest.weight[1], -closest.weight[2], -closest.weight[3]}, {0, 0}, 0, share};
   const Vec2 met = TrianglePlane<6>(corners(pair, s.x).x, pair.w, out.foot).along();
   out.met[0] = met[0], out.met[1] = met[1];
   return true;

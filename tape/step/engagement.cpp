@@ -12,16 +12,13 @@ std::vector<int> sticking_vertices(const World& world, const SampleTriangle& pai
 
 std::vector<Real> vertex_engagement(const World& world, const State& state) {
   std::vector<Real> engagement(state.x.size(), 0);
-  EffectMemory memory = state.memory;
-  for_each_memory(memory, [&](const auto& pairs) {
-    for (const auto& m : pairs) {
-      const Real value = m.engagement(adhesion_of(world, m));
-      const SurfaceTriangle& other = world.surface.triangles[static_cast<std::size_t>(m.triangle)];
-      std::vector<int> vertices = sticking_vertices(world, m);
-      vertices.insert(vertices.end(), std::begin(other.v), std::end(other.v));
-      for (int v : vertices)
-        if (v < std::ssize(engagement)) engagement[static_cast<std::size_t>(v)] = std::max(engagement[static_cast<std::size_t>(v)], value);
-    }
+  for_each_remembered(state, [&](const auto& m) {
+    const Real value = m.engagement(adhesion_of(world, m));
+    const SurfaceTriangle& other = world.surface.triangles[static_cast<std::size_t>(m.triangle)];
+    std::vector<int> vertices = sticking_vertices(world, m);
+    vertices.insert(vertices.end(), std::begin(other.v), std::end(other.v));
+    for (int v : vertices)
+      if (v < std::ssize(engagement)) engagement[static_cast<std::size_t>(v)] = std::max(engagement[static_cast<std::size_t>(v)], value);
   });
   return engagement;
 }

@@ -16,6 +16,20 @@ Adhesion adhesion_of(const World& world, const Name& pair) {
   return world.setup.scene.adhesion(material(sticking_vertices(world, pair)[0]), material(triangle));
 }
 
+/// All pairs that are remembered, those asleep in clusters too.
+template <class F>
+void for_each_remembered(const State& state, F&& f) {
+  const auto each = [&](const auto&... of_effect) {
+    const auto visit = [&]<class T>(const MemoryOf<T>& memory) {
+      if constexpr (Remembers<T>)
+        for (const auto& pair : memory.pairs) f(pair);
+    };
+    (visit(of_effect), ...);
+  };
+  std::apply(each, state.memory);
+  for (const Cluster& cluster : state.clusters) std::apply(each, *cluster.asleep);
+}
+
 /// How much adhesion is left at each vertex of the strips [strip vertices], in [0, 1]: the most of all pairs that name it. Of a pair: its
 /// beta; 1 for a bond; of area the stiffness that is left of it. 0 where nothing adheres.
 std::vector<Real> vertex_engagement(const World& world, const State& state);

@@ -5,6 +5,7 @@
 #include "tape/bodies/free_flight.hpp"
 #include "tape/effects/axle_torque.inl"
 #include "tape/effects/barrier.inl"
+#include "tape/effects/body_drive.inl"
 #include "tape/math/rotation.hpp"
 
 namespace tape {
@@ -26,6 +27,19 @@ void add_grip_forces(const World& world, const State& after, Real dt, StepReport
       force += drive.grip_stiffness[spring] * (target - x[static_cast<std::size_t>(grip.vertices[k])]);
     }
     report.grip_force.push_back(force);
+  }
+}
+/// What holds a driven body bears what the world exerts on it.
+void add_driven_forces(const World& world, const State& after, Real dt, StepReport& report) {
+  std::vector<BodyDrive::Element> held;
+  BodyDrive::build(world.setup.scene, world.assembly, params<BodyDrive>(world.setup.effects), held);
+  if (held.empty()) return;
+  State at = after;
+  at.time -= dt;
+  const Drive drive = Drive::at(world, at, dt);
+  for (const BodyDrive::Element& hold : held) {
+    const auto b = static_cast<std::size_t>(hold.body);
+    report.body_force[b] = hold.stiffness.gradient(after.bodies[b].pose, drive.body_target[b]).head<3>();
   }
 }
 void add_axle_torques(const World& world, const State& before, const State& after, Real dt, StepReport& report) {
@@ -68,6 +82,7 @@ void finish_step(const World& world, const Carriage& carriage, const State& befo
     report.momentum += mass.mass * body.velocity;
     report.angular_momentum += mass.mass * body.pose.position.cross(body.velocity) + body.angular_momentum;
   }
+  add_driven_forces(world, after, dt, report);
   add_grip_forces(world, after, dt, report);
   if (!world.assembly.axles.empty()) add_axle_torques(world, before, after, dt, report);
 }

@@ -10,6 +10,7 @@
 #include "cosim/roll/roll_figures.hpp"
 #include "cosim/run/read_run.hpp"
 #include "tape/contact/intersection.hpp"
+#include "tape/step/engagement.hpp"
 
 using namespace tape;
 
@@ -94,6 +95,44 @@ TEST(SettledRoll, TapeThatAdheresToItselfFarFromTheRollIsNotWound) {
   pair.vertex = 10;  // the tip's cell on the first turn: now all of the tape is held
   pairs.push_back(pair);
   EXPECT_GT(figures(roll).at("wound_length_m"), before + 0.08);
+}
+/// What sleeps in its cluster is wound all the same.
+TEST(SettledRoll, ReducedItMeasuresAsTheFullShell) {
+  cosim::RunInput input = roll_input({"roll.turns=5", "model=coh-r", "cluster.collar=1"});
+  cosim::place_roll(settled({"roll.turns=5"}), 0, input.setup);
+  const World world = World::build(input.setup);
+  State state = State::start(world);
+  ASSERT_TRUE(make_stepper(Backend::cpu, world)->step(state).ok);
+  ASSERT_GT(std::get<MemoryOf<Cohesion>>(*state.clusters.at(0).asleep).pairs.size(),
+            std::get<MemoryOf<Cohesion>>(state.memory).pairs.size());
+  const auto measured = cosim::roll_figures(world, state, 0);
+  EXPECT_EQ(measured[0].first, "turns");
+  EXPECT_NEAR(measured[0].second, 5, 0.02) << "rows are 1/42 of a turn apart";
+  const std::vector<Real> engagement = vertex_engagement(world, state);
+  const Winding& w = *world.setup.scene.strips[0].winding;
+  int held = 0, wound = 0;
+  for (int v = 0; v < world.assembly.strips[0].vertices; ++v) {
+    if (world.assembly.rest[static_cast<std::size_t>(v)].x() > w.wound()) continue;
+    ++wound, held += engagement[static_cast<std::size_t>(v)] > 0;
+  }
+  EXPECT_GT(held, 0.95 * wound);
+}
+/// Area that lies in the band at the start sticks; from then on the law decides, or each row would draw the next one in.
+TEST(SettledRoll, ByAreaItsFreeEndStaysFree) {
+  const std::vector<std::string> by_area = {"roll.turns=2.2", "strip.cells_across=3", "strip.cell_length=0.003",
+                                            "interfaces.0.law=per_area", "interfaces.1.law=per_area"};
+  const cosim::SettledRoll roll = settled(by_area);
+  const Winding& w = *roll.world.setup.scene.strips[0].winding;
+  EXPECT_NEAR(figures(roll).at("wound_length_m"), w.wound(), 2 * w.cell);
+}
+TEST(SettledRoll, AnEffectThatIsOffHoldsNothingTogether) {
+  EXPECT_TRUE(cosim::holds_together(roll_input().setup, 0));
+  EXPECT_FALSE(cosim::holds_together(roll_input({"effects.cohesion=off"}).setup, 0));
+  const std::vector<std::string> bonds = {"interfaces.0.law=bond", "interfaces.1.law=bond", "effects.cohesion=off"};
+  EXPECT_TRUE(cosim::holds_together(roll_input(bonds).setup, 0));
+  EXPECT_NEAR(figures(settled(bonds)).at("turns"), 2, 0.02) << "cohesion settles it all the same";
+  for (const auto& change : {"effects.cohesion=off", "interfaces.0.law=none"})
+    EXPECT_THROW(roll_input({"model=coh-r", change}), InputError) << change;
 }
 TEST(SettledRoll, StaysWoundWhereItAdheresAndSpringsOpenWhereItDoesNot) {
   // Slip from bonding: counted from each step, the layers creep (cosim/roll/README.md), four Newton iterations a step.

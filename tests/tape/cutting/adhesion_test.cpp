@@ -118,7 +118,7 @@ TEST(CutAdhesion, NewSamplesAreAsFarOpenAndSlipped) {
   EffectMemory memory;
   auto& before = std::get<MemoryOf<CohesiveZone>>(memory).pairs;
   for (int sample = 0; sample < 4 * over.large; ++sample) {
-    CohesiveZone::Memory m{{sample, over.large}, {0.3, 0.3, 0.4}, {0, 0}, 1.5e-5};
+    CohesiveZone::Memory m{{sample, over.large}, {0.3, 0.3, 0.4}, {0, 0}, 1.5e-5, 1};
     const auto at = plane(over.world.old_x, over.world.old_triangles, sample, over.large, m.foot);
     for (int a = 0; a < 2; ++a) m.met[a] = at.along()[a] - at.e[a].dot(kSlip);
     before.push_back(m);

@@ -163,6 +163,20 @@ TEST(Cohesion, OnlyStickyFacesAdhere) {
   s.pair.kind = PairKind::edge_edge;
   EXPECT_FALSE(s.cohesion.begin(s.pair, s.view(s.x), m)) << "edges never stick";
 }
+/// As of pairs that settled by the other rule, slept in a cluster and wake.
+TEST(Cohesion, SlipThatIsRememberedCountsOnlyWhereItAddsUp) {
+  for (SlipFrom from : {SlipFrom::step, SlipFrom::bonding}) {
+    Stuck s;
+    s.law.slip = SlipFrom::bonding;
+    Cohesion::Memory m = s.engaged();
+    s.x[0] += Vec3(3e-6, 4e-6, 0);
+    ASSERT_TRUE(s.cohesion.renew(s.step(m), 0, m));
+    ASSERT_GT(Eigen::Map<const Vec3>(m.slip.data()).norm(), 0);
+    s.law.slip = from;
+    s.start = s.x;
+    EXPECT_NEAR(s.cohesion.slip(s.step(m), 0).norm(), from == SlipFrom::step ? 0 : 5e-6, 1e-12);
+  }
+}
 TEST(Cohesion, SlipSinceBondingAddsUpAndSlipOfTheStepDoesNot) {
   for (SlipFrom from : {SlipFrom::step, SlipFrom::bonding}) {
     Stuck s;

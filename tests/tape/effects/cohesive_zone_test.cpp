@@ -109,9 +109,17 @@ TEST(CohesiveZone, OnlyStickyFacesStick) {
   CohesiveZone::Memory m{};
   EXPECT_FALSE(s.zone.begin(s.pair, s.view(s.start), m));
 }
-TEST(CohesiveZone, OfStripOnStripEachSideCarriesHalf) {
+TEST(CohesiveZone, OfStripOnStripTheStickyFaceCarriesAllAndOfEqualFacesEachHalf) {
   Sample s;
+  for (auto& of_sample : s.adhesion[0].sticks) of_sample[0] = of_sample[1] = true;
   const Real whole = s.traction(s.stuck(), {0, 0, 1e-5}).z();
   s.pair.id.triangle = 3;  // of the strips' four
-  EXPECT_NEAR(s.traction(s.stuck(), {0, 0, 1e-5}).z(), whole / 2, 1e-9 * whole);
+  EXPECT_NEAR(s.traction(s.stuck(), {0, 0, 1e-5}).z(), whole, 1e-9 * whole) << "sticky on backing";
+  std::swap(s.pair.v[4], s.pair.v[5]);
+  EXPECT_NEAR(s.traction(s.stuck(), {0, 0, 1e-5}).z(), whole / 2, 1e-9 * whole) << "sticky on sticky";
+  std::swap(s.pair.v[1], s.pair.v[2]);
+  CohesiveZone::Memory m{};
+  EXPECT_FALSE(s.zone.begin(s.pair, s.view(s.start), m)) << "backing on sticky: the other strip's samples do it";
+  std::swap(s.pair.v[4], s.pair.v[5]);
+  EXPECT_NEAR(s.traction(s.stuck(), {0, 0, 1e-5}).z(), whole / 2, 1e-9 * whole) << "backing on backing";
 }
