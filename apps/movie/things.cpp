@@ -39,7 +39,7 @@ std::optional<std::size_t> find_body(const std::string& name, const RecordedMesh
 }
 
 [[noreturn]] void refuse_mount(const std::string& name) {
-  throw InputError("camera.mount = " + name + ": no body and no link or frame robot:link has this name");
+  throw InputError("mount = " + name + ": no body and no link or frame robot:link has this name");
 }
 
 /// @throws InputError if nothing is named so
@@ -59,7 +59,7 @@ std::vector<int> vertices_named(const RecordedMesh& mesh, const std::string& nam
     std::copy_if(all.begin(), all.end(), std::back_inserter(tip), [&](int v) { return along(v) > length - 1e-9; });
     return tip;
   }
-  throw InputError("camera.follow = " + name + ": no thing of the scene has this name (allowed: " + names + ")");
+  throw InputError("follow = " + name + ": no thing of the scene has this name (allowed: " + names + ")");
 }
 }  // namespace
 

@@ -63,7 +63,8 @@ void visit_columns(const World& world, const std::vector<Phase>& phases, const c
     f("blade_pressure_Pa", pressure), f("cuts", static_cast<Real>(made)), f("cuts_refused", static_cast<Real>(std::ssize(row.cuts) - made));
   }
   if (!world.setup.scene.articulations.empty())
-    f("momentum_exchange_residual", r.exchange_residual.value_or(std::numeric_limits<Real>::quiet_NaN()));
+    f("momentum_exchange_residual", r.exchange_residual.value_or(std::numeric_limits<Real>::quiet_NaN())),
+        f("unsettled_substeps", r.unsettled_substeps), f("link_mismatch_m", r.link_mismatch);
 }
 }  // namespace
 

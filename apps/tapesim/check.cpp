@@ -32,6 +32,7 @@ int check(const SceneArguments& arguments) {
              scene.strips.size(), scene.bodies.size(), loaded.world.assembly.surface_vertices, loaded.world.assembly.triangles.size(),
              3 * loaded.world.assembly.blocks, cosim::planned_steps(scene), to_text(scene.time.dt));
   print_rolls(loaded);
+  for (const std::string& note : cosim::notes_on(loaded.input.run.robots)) fmt::print("robot {}\n", note);
   return kDone;
 }
 }  // namespace

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "cosim/episode/episode_file.hpp"
+#include "cosim/episode/replay_file.hpp"
 #include "cosim/run/new_file.hpp"
 #include "cosim/run/state_file.hpp"
 #include "tape/math/rotation.hpp"
@@ -47,18 +48,19 @@ Vec2 normal(std::mt19937_64& random) {
 }
 }  // namespace
 
-EpisodeRecorder::EpisodeRecorder(const fs::path& file, const SceneArguments& scene, const LoadedWorld& loaded, const Stepper& stepper,
+EpisodeRecorder::EpisodeRecorder(const fs::path& file, const SceneArguments& scene, const LoadedWorld& loaded, Stepper& stepper,
                                  const State& start)
     : file_(stem_of(file)),
       scene_(scene.scene),
       params_(loaded.input.episode),
       world_(loaded.world),
-      stepper_(dynamic_cast<const cosim::CoupledStepper*>(&stepper)),
+      stepper_(dynamic_cast<cosim::CoupledStepper*>(&stepper)),
       hub_(loaded.world, "hub"),
       motion_(params_.motion_rate, start.time),
       pictures_(params_.picture_rate, start.time),
       seed_(static_cast<std::uint64_t>(loaded.world.setup.scene.seed)) {
   episode_.name = file_.filename().string();
+  cosim::TextFile{fs::path(file_.string() + ".h5")};  // whether it can be written, before the work
   episode_.origin = origin_of(scene);
   const auto& robots = loaded.input.run.robots.robots;
   for (std::size_t r = 0; r < robots.size(); ++r) {
@@ -70,6 +72,8 @@ EpisodeRecorder::EpisodeRecorder(const fs::path& file, const SceneArguments& sce
   for (const movie::CameraParams& camera : loaded.input.pictures.cameras) {
     const auto* pinhole = std::get_if<render::PinholeSettings>(&camera.lens);
     if (!pinhole) continue;
+    if (std::ranges::find(episode_.cameras, pinhole->name, &cosim::EpisodeCamera::name) != episode_.cameras.end())
+      throw InputError("--record: two cameras of the scene are named " + pinhole->name + "; give each its camera.name");
     const cosim::Calibration& c = pinhole->calibration;
     const Pose X_BC{rotation_exp(pinhole->rotation), pinhole->position};
     mounts_.emplace_back(pinhole->mount, world_, stepper_);
@@ -95,7 +99,7 @@ void EpisodeRecorder::add(const State& state) {
 }
 
 void EpisodeRecorder::add_joints(const State& state) {
-  const std::vector<cosim::RobotRecord> records = stepper_->records();
+  const std::vector<cosim::RobotRecord> records = stepper_->records(state);
   for (std::size_t s = 0; s < robots_.size(); ++s) {
     const cosim::RobotRecord& record = records[static_cast<std::size_t>(robots_[s])];
     episode_.streams[s].times.push_back(state.time);
@@ -126,8 +130,10 @@ void EpisodeRecorder::add_landmarks(const State& state) {
 std::string EpisodeRecorder::replay_text() const {
   const std::string name = file_.filename().string();
   const fs::path folder = fs::absolute(file_).parent_path();
-  std::string text = fmt::format("# {}\nepisode: {}\nscene: {}\nrecording: {}.h5\ncamera: {}\nstart: 0\njoints:\n", episode_.origin, name,
-                                 fs::absolute(scene_).lexically_relative(folder).string(), name, episode_.cameras[0].name);
+  const bool short_recording = world_.setup.scene.time.duration <= cosim::ReplayParams{}.lead_in;
+  std::string text = fmt::format("# {}\nepisode: {}\nscene: {}\nrecording: {}.h5\ncamera: {}\nstart: 0\n{}joints:\n", episode_.origin, name,
+                                 fs::absolute(scene_).lexically_relative(folder).string(), name, episode_.cameras[0].name,
+                                 short_recording ? "lead_in: 0\n" : "");
   for (const cosim::MotionStream& stream : episode_.streams) {
     if (std::ranges::any_of(stream.joints, [](const cosim::RecordedJoint& joint) { return joint.unit == cosim::Unit::rad; }))
       text += fmt::format("  \"{0}:*\": {{drives: \"{0}:*\", unit: rad}}\n", stream.name);

@@ -16,7 +16,7 @@ namespace tape::tapesim {
 class EpisodeRecorder {
  public:
   /// @param file  FILE.h5  @throws InputError if there is no robot with joints, no calibrated camera or no hub
-  EpisodeRecorder(const std::filesystem::path& file, const SceneArguments& scene, const LoadedWorld& loaded, const Stepper& stepper,
+  EpisodeRecorder(const std::filesystem::path& file, const SceneArguments& scene, const LoadedWorld& loaded, Stepper& stepper,
                   const State& start);
   void add(const State& state);  ///< after each step
   /// Writes FILE.h5, and FILE.yaml to replay it unless there is one.
@@ -30,7 +30,7 @@ class EpisodeRecorder {
   std::filesystem::path file_, scene_;
   EpisodeParams params_;
   const World& world_;
-  const cosim::CoupledStepper* stepper_;
+  cosim::CoupledStepper* stepper_;
   HubShape hub_;
   cosim::Episode episode_;
   std::vector<int> robots_;    // [streams]

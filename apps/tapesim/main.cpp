@@ -29,6 +29,14 @@ void require_command(const CLI::App& app, const std::string& word) {
   throw InputError(word + ": no such command; " + cosim::suggestion(word, names));
 }
 
+/// A variable of the shell that is not set must not read as an option that was not given.
+void refuse_empty_values(const CLI::App& app) {
+  for (const CLI::App* command : app.get_subcommands())
+    for (const CLI::Option* option : command->get_options())
+      for (const std::string& value : option->results())
+        if (value.empty()) throw InputError(option->get_name() + ": the value is empty");
+}
+
 int act(const Action& chosen) {
   const auto say = [](const char* what, const std::exception& e) { fmt::print(stderr, "tapesim: {}{}\n", what, e.what()); };
   try {
@@ -76,6 +84,7 @@ int main(int argc, char** argv) {
     } catch (const CLI::ParseError& e) {
       return app.exit(e) == 0 ? kDone : kBadInput;
     }
+    refuse_empty_values(app);
     return chosen();
   });
 }

@@ -26,10 +26,10 @@ cosim::RunLog simulate_into(RunFolder& folder, LoadedWorld& loaded, Stepper& ste
     on_step(now, row);
   };
   options.on_cut = [&] { folder.start_mesh(); };
-  const auto* coupled = dynamic_cast<const cosim::CoupledStepper*>(&stepper);  // none where there are no robots
+  auto* coupled = dynamic_cast<cosim::CoupledStepper*>(&stepper);  // none where there are no robots
   options.on_record = [&](const State& now) {
     folder.add_state(now, now.step > first ? stepper.contact_force() : std::vector<Real>(),
-                     coupled ? coupled->records() : std::vector<cosim::RobotRecord>());
+                     coupled ? coupled->records(now) : std::vector<cosim::RobotRecord>());
   };
   return cosim::simulate(loaded.world, stepper, state, options);
 }

@@ -65,9 +65,10 @@ render::Picture start_picture(LoadedReplay& replay) {
   const cosim::RunInput& run = replay.loaded.input.run;
   const State start = State::start(world);
   const std::unique_ptr<Stepper> stepper = cosim::make_stepper(Backend::cpu, world, run.robots);
-  const auto* coupled = dynamic_cast<const cosim::CoupledStepper*>(stepper.get());
+  auto* coupled = dynamic_cast<cosim::CoupledStepper*>(stepper.get());
   const auto mesh = cosim::RecordedMesh::of(world, run.robots, run.phases, "", "");
-  const auto frame = cosim::RecordedFrame::of(world, start, {.robots = coupled ? coupled->records() : std::vector<cosim::RobotRecord>()});
+  const auto frame =
+      cosim::RecordedFrame::of(world, start, {.robots = coupled ? coupled->records(start) : std::vector<cosim::RobotRecord>()});
   movie::Survey survey(replay.loaded.input.pictures);
   survey.add(mesh, frame);
   EpisodeEye eye(replay);

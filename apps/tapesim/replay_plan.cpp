@@ -54,8 +54,8 @@ ReplayPlan load_plan(const fs::path& path) {
     }
     file.require_all_used();
   }
-  if (plan.name.empty() || plan.name.find('/') != std::string::npos)
-    (name ? name : file["episode"]).fail("the name holds no slash: it names the folder of the results");
+  if (plan.name.empty() || plan.name.find('/') != std::string::npos || plan.name == "." || plan.name == "..")
+    (name ? name : file["episode"]).fail("the name holds no slash and is neither . nor ..: it names the folder of the results");
   return plan;
 }
 }  // namespace tape::tapesim

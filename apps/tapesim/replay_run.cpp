@@ -55,7 +55,8 @@ const cosim::LandmarkTrack* LoadedReplay::landmarks() const {
 LoadedReplay load_replay(const std::filesystem::path& episode, const std::string& model, const std::vector<std::string>& overrides) {
   const cosim::SceneFile file = cosim::SceneFile::load(episode);
   cosim::Replay replay = cosim::read_replay(file);
-  if (replay.name.find('/') != std::string::npos) file["episode"].fail("the name holds no slash: it names a folder of results");
+  if (replay.name.find('/') != std::string::npos || replay.name == "." || replay.name == "..")
+    file["episode"].fail("the name holds no slash and is neither . nor ..: it names a folder of results");
   SceneArguments scene{.scene = replay.scene.string(), .overrides = replay.overrides, .model = model};
   scene.overrides.insert(scene.overrides.end(), overrides.begin(), overrides.end());
   LoadedWorld loaded = load_world(scene, Rolls::settle, [&](cosim::RunInput& input) { cosim::set_up(replay, input); });
@@ -67,6 +68,15 @@ LoadedReplay load_replay(const std::filesystem::path& episode, const std::string
   for (const cosim::Landmark& mark : track->landmarks)
     if (mark.visible && mark.time > end + score::kMaxTimeOffset)
       file["recording"].fail(fmt::format("has a landmark at {:g} s, after its motions, which end at {:g} s", mark.time, end));
+  const Real start = result.replay.start + result.replay.params.lead_in;
+  const auto counts = [&](const cosim::Landmark& mark) { return mark.visible && mark.time >= start; };
+  if (std::ranges::none_of(track->landmarks, counts))
+    file["lead_in"].fail(
+        fmt::format("no landmark is visible from {:g} s of the recording on, where it ends (allowed: at least one)", start));
+  const Real between = result.loaded.world.setup.scene.time.dt;
+  if (between > 2 * score::kMaxTimeOffset)
+    file["scene"].fail(
+        fmt::format("has a state each {:g} s (time.dt); landmarks are scored by one within {:g} s", between, score::kMaxTimeOffset));
   try {
     HubShape(result.loaded.world, track->body);
   } catch (const InputError& e) {

@@ -96,18 +96,17 @@ int run(const RunArguments& arguments) {
   set_threads(arguments.threads);
   const Backend backend = backend_of(arguments.backend);
   LoadedWorld loaded = load_world(arguments.scene, Rolls::settle);
-  if (arguments.video) {
-    movie::require_video(loaded.input.pictures);
-    movie::require_things(loaded.input.pictures.cameras,
-                          cosim::RecordedMesh::of(loaded.world, loaded.input.run.robots, loaded.input.run.phases, "", ""));
-  }
+  if (arguments.video) movie::require_video(loaded.input.pictures);
   const std::unique_ptr<Stepper> stepper = cosim::make_stepper(backend, loaded.world, loaded.input.run.robots);
   State state = arguments.resume.empty() ? State::start(loaded.world) : resumed(arguments.resume, loaded.world);
   if (!arguments.resume.empty()) {
     loaded.world = loaded.world.with(state.remnants);
     stepper->renew(state);
   }
-  const int first_step = state.step;
+  const int first_step = state.step, planned = cosim::planned_steps(loaded.world.setup.scene) - first_step;
+  if (!arguments.resume.empty() && planned <= 0)
+    throw InputError(fmt::format("{}: the state at {} s is the end of the scene or beyond (time.duration = {}): nothing is left to run",
+                                 arguments.resume, to_text(state.time), to_text(loaded.world.setup.scene.time.duration)));
   std::optional<EpisodeRecorder> recorder;
   if (!arguments.record.empty()) recorder.emplace(arguments.record, arguments.scene, loaded, *stepper, state);
   RunFolder folder(arguments.out.empty() ? "out/" + loaded.world.setup.scene.name : arguments.out, loaded.world, loaded.input.run.robots,
@@ -115,7 +114,6 @@ int run(const RunArguments& arguments) {
   std::optional<movie::LiveMovie> live;
   if (arguments.video && first_step == 0) folder.show(live.emplace(loaded.input.pictures, folder / "video.mp4"));
   remember_interrupts();
-  const int planned = cosim::planned_steps(loaded.world.setup.scene) - first_step;
   const cosim::RunLog log = [&] {
     Progress progress("run", arguments.steps < 0 ? planned : std::min(planned, arguments.steps));
     return simulate_into(folder, loaded, *stepper, state, arguments.steps, [&](const State& now, const cosim::StepRow& row) {

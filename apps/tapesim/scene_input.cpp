@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "apps/movie/things.hpp"
 #include "apps/tapesim/interrupt.hpp"
 #include "apps/tapesim/progress.hpp"
 #include "cosim/roll/roll_store.hpp"
@@ -44,7 +45,7 @@ void settle(cosim::RunInput& run, const std::string& file, Rolls rolls) {
 }  // namespace
 
 bool as_wound(const cosim::RunInput& run, std::size_t strip) {
-  return run.settle_roll && run.setup.scene.strips[strip].settled.empty() && cosim::holds_together(run.setup.scene, strip);
+  return run.settle_roll && run.setup.scene.strips[strip].settled.empty() && cosim::holds_together(run.setup, strip);
 }
 
 SettleParams watched_settle() {
@@ -79,6 +80,11 @@ LoadedWorld load_world(const SceneArguments& arguments, Rolls rolls, const std::
     cosim::require_figures(input.run.figures, world);
   } catch (const InputError& e) {
     input.run.file["record"]["figures"].fail(e.what());
+  }
+  try {
+    movie::require_things(input.pictures.cameras, cosim::RecordedMesh::of(world, input.run.robots, input.run.phases, "", ""));
+  } catch (const InputError& e) {
+    input.run.file["camera"].fail(e.what());
   }
   return {std::move(input), std::move(world)};
 }

@@ -48,8 +48,8 @@ Study load_study(const std::filesystem::path& path, const std::vector<std::strin
   const cosim::SceneFile file = cosim::SceneFile::load(path);
   Study study;
   study.name = file["study"].text_or(path.stem().string());
-  if (study.name.find('/') != std::string::npos)
-    file["study"].fail("the name of a study holds no slash: it names the folder of its results");
+  if (study.name.find('/') != std::string::npos || study.name == "." || study.name == "..")
+    file["study"].fail("the name of a study holds no slash and is neither . nor ..: it names the folder of its results");
   const cosim::Reader scene = file["scene"];
   study.scene = cosim::find_file(path, "scenes", scene.text());
   if (study.scene.empty()) scene.fail("no such scene beside the study, above it, or in data/scenes");
@@ -61,6 +61,10 @@ Study load_study(const std::filesystem::path& path, const std::vector<std::strin
     study.grid.emplace_back(key, grid[key].texts());
     if (study.grid.back().second.empty()) grid[key].fail("needs at least one value");
   }
+  for (const auto& [key, values] : study.grid)
+    for (const std::string& set : study.overrides)
+      if (set.starts_with(key + "="))
+        grid[key].fail("is set to " + set.substr(key.size() + 1) + " as well: a key is either of the grid or set");
   if (study.grid.empty()) grid.fail("needs at least one key, such as solver.velocity_tol: [1e-2, 1e-3]");
   Real runs = 1;
   for (const auto& [key, values] : study.grid) runs *= static_cast<Real>(values.size());

@@ -3,7 +3,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "robot/kinematics/joint_map.hpp"
 #include "tape/core/error.hpp"
 #include "tape/core/stopwatch.hpp"
 
@@ -51,13 +53,13 @@ int coordinates(const robot::World& world, int robot) { return static_cast<int>(
 tape::Pose to_tape(const robot::Pose& pose) { return {pose.linear(), pose.translation()}; }
 
 CoupledStepper::CoupledStepper(const RobotScene& robots, const tape::World& world, std::unique_ptr<tape::Stepper> tape)
-    : robots_(robots), world_(world), tape_(std::move(tape)), bullet_(make_world(robots)), pinching_(robots, world) {
+    : robots_(robots), world_(world), tape_(std::move(tape)), bullet_(make_world(robots)), pinching_(robots, world, bullet_) {
   const tape::Scene& scene = world.setup.scene;
   for (const tape::Articulation& articulation : scene.articulations) {
     const auto named = [&](const RobotPart& part) { return part.name == articulation.name; };
     const auto found = std::ranges::find_if(robots_.robots, named);
     TAPE_CHECK(found != robots_.robots.end());
-    Part part{static_cast<int>(found - robots_.robots.begin()), {}, {}};
+    Part part{static_cast<int>(found - robots_.robots.begin()), {}, {}, robot::joint_map(*found->model).independent};
     for (int link = 0; link < static_cast<int>(found->model->links.size()); ++link) {
       const auto body = std::ranges::find(scene.bodies, body_name(*found, link), &tape::Body::name);
       if (body == scene.bodies.end() || body->motion != tape::Motion::linked) continue;
@@ -76,15 +78,15 @@ CoupledStepper::CoupledStepper(const RobotScene& robots, const tape::World& worl
 void CoupledStepper::add_drives(const Part& part, const MatrixXd& bare, const MatrixXd& T, const VectorXd& given,
                                 tape::ArticulationStep& step) const {
   const double dt = world_.setup.scene.time.dt;
-  const Eigen::Index n = T.cols(), joints = bullet_.state(part.robot).q.size();
+  const Eigen::Index n = T.cols();
   const VectorXd limit = bullet_.effort_limit(part.robot), effort = bullet_.drive_effort(part.robot);
   step.drive = step.least = step.most = VectorXd::Zero(n + 1);
   const MatrixXd driven = step.inertia.topLeftCorner(n, n);
   for (Eigen::Index k = 0; k < n; ++k) {
-    Eigen::Index joint = -1;  // the one that this motion is, unless that has no drive with a limit
-    for (Eigen::Index j = 0; j < joints; ++j)
-      if (T(T.rows() - joints + j, k) == 1 && std::isfinite(limit[j])) joint = joint < 0 ? j : joint;
-    if (joint < 0) continue;
+    const Eigen::Index u = k - (n - std::ssize(part.independent));
+    if (u < 0) continue;  // of a free base
+    const int joint = part.independent[static_cast<std::size_t>(u)];
+    if (!std::isfinite(limit[joint])) continue;
     step.drive[k] = std::max(0.0, driven(k, k) - bare(k, k));
     step.least[k] = effort[joint] - limit[joint], step.most[k] = effort[joint] + limit[joint];
   }
@@ -161,6 +163,8 @@ tape::StepReport CoupledStepper::step(tape::State& state, const tape::Exchange&)
   report.stages.push_back({"exchange", whole - report_.bullet_ms - report_.tape_ms});
   report.wall_ms = whole;
   report.exchange_residual = report_.residual;
+  report.unsettled_substeps = bullet_.unsettled_substeps();
+  report.link_mismatch = report_.mismatch;
   return report;
 }
 
@@ -178,20 +182,39 @@ tape::StepReport CoupledStepper::step_both(tape::State& state) {
   for (const VectorXd& of : load_) next.outside.insert(next.outside.end(), of.begin(), of.end());
   exerted_ = report.articulations;
   state = std::move(next);
+  standing_ = state.outside;
   note_mismatch(state);
   return report;
 }
 
-std::vector<RobotRecord> CoupledStepper::records() const {
+/// Whether its base is a fixed body there.
+bool CoupledStepper::rests_on_tape_side(const RobotPart& robot) const {
+  const auto& bodies = world_.setup.scene.bodies;
+  const auto base = std::ranges::find(bodies, body_name(robot, 0), &tape::Body::name);
+  return base != bodies.end() && base->motion == tape::Motion::fixed;
+}
+
+/// Does nothing where the last step has led to this state.
+void CoupledStepper::stand_at(const tape::State& state) {
+  if (standing_ == state.outside) return;
+  restore(state);
+  follow_script(state);
+  time_ = state.step * world_.setup.scene.time.dt;
+  exerted_.clear();
+  standing_ = state.outside;
+}
+
+std::vector<RobotRecord> CoupledStepper::records(const tape::State& state) {
+  stand_at(state);
   std::vector<RobotRecord> records;
   for (int r = 0; r < bullet_.robots(); ++r) {
     const RobotPart& robot = robots_.robots[static_cast<std::size_t>(r)];
-    const RobotState state = bullet_.state(r);
+    const RobotState at = bullet_.state(r);
     const auto links = robot.model->links.size();
-    const robot::VecX told = scripts_.empty() ? RobotScript(robot, {}).told_at(0) : scripts_[static_cast<std::size_t>(r)].told_at(time_);
-    RobotRecord record{state.q, state.v.tail(state.q.size()), told, bullet_.drive_effort(r), {}};
+    RobotRecord record{at.q, at.v.tail(at.q.size()), scripts_[static_cast<std::size_t>(r)].told_at(time_), bullet_.drive_effort(r), {}};
     for (std::size_t l = 0; l < links; ++l) record.links.push_back(bullet_.link_pose(r, static_cast<int>(l)));
     record.wrench.assign(links, Eigen::Matrix<double, 6, 1>::Zero());
+    if (rests_on_tape_side(robot)) record.wrench[0].setConstant(std::numeric_limits<double>::quiet_NaN());
     records.push_back(std::move(record));
   }
   for (std::size_t a = 0; a < exerted_.size(); ++a)

@@ -23,7 +23,7 @@ struct RobotRecord {
   robot::VecX position, velocity, command, effort;  ///< [nj] rad or m, by s, of the drives' targets, N m or N
   std::vector<robot::Pose> links;                   ///< [nl] X_WL
   std::vector<Eigen::Matrix<double, 6, 1>> wrench =
-      {};  ///< [nl] N, N m: of the tape side on the link, about its origin, mean over the step
+      {};  ///< [nl] N, N m: of the tape side on the link, about its origin, mean over the step; NaN of a fixed base, which has no unknowns
 };
 
 /// Of all robots: [robots][nj] rad or m.
@@ -46,7 +46,7 @@ class CoupledStepper final : public tape::Stepper {
   const robot::World& bullet() const { return bullet_; }
   const RobotScene& robots() const { return robots_; }
   const ExchangeReport& exchange() const { return report_; }
-  std::vector<RobotRecord> records() const;  ///< [robots]
+  std::vector<RobotRecord> records(const tape::State& state);  ///< [robots] at that state; what was exerted: in the step that led to it
   JointPositions joints() const;
 
  private:
@@ -54,15 +54,18 @@ class CoupledStepper final : public tape::Stepper {
   struct Part {
     int robot;
     std::vector<int> links, bodies;
+    std::vector<int> independent;  // joints that follow no other
   };
   tape::ArticulationStep predicted(const Part& part, const tape::State& state, const robot::RobotState& before, double dt,
                                    const robot::VecX& load) const;
   void add_drives(const Part& part, const Eigen::MatrixXd& bare, const Eigen::MatrixXd& T, const Eigen::VectorXd& given,
                   tape::ArticulationStep& step) const;
+  bool rests_on_tape_side(const RobotPart& robot) const;
   std::vector<robot::VecX> forces(const tape::StepReport& report) const;
   std::vector<robot::RobotState> robot_states() const;
   std::vector<robot::Vec3> momenta() const;
   void restore(const tape::State& state);
+  void stand_at(const tape::State& state);
   void follow_script(const tape::State& state);
   void see_to_pinching(const tape::State& state);
   void advance_bullet(const robot::Snapshot& start, double dt, const std::vector<robot::VecX>& tau);
@@ -81,6 +84,7 @@ class CoupledStepper final : public tape::Stepper {
   Pinching pinching_;
   std::vector<tape::Index2> pinched_;  // pairs of bodies, in this step
   std::vector<Part> parts_;
+  std::optional<std::vector<double>> standing_;    // State::outside of the state at which Bullet's world stands
   double time_ = 0;                                // [s] of the end of the step
   std::vector<double> events_;                     // that scripts_ know of
   std::vector<robot::VecX> load_;                  // [robots][dof] that the tape side exerted in the last step, zero at the start

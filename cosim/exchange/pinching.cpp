@@ -54,7 +54,7 @@ Pose inverse_times(const Pose& a, const Pose& b) {
 }
 }  // namespace
 
-Pinching::Pinching(const RobotScene& robots, const tape::World& world) : world_(world) {
+Pinching::Pinching(const RobotScene& robots, const tape::World& world, const robot::World& start) : world_(world) {
   const tape::Scene& scene = world.setup.scene;
   for (std::size_t r = 0; r < robots.robots.size(); ++r) {
     for (int link = 0; link < static_cast<int>(robots.robots[r].model->links.size()); ++link) {
@@ -64,16 +64,11 @@ Pinching::Pinching(const RobotScene& robots, const tape::World& world) : world_(
       for (const Vec3& v : added.mesh.vertices) added.box.extend(v);
     }
   }
-  const auto may_overlap = [&](const Link& a, const Link& b) {
-    const auto& pairs = robots.robots[static_cast<std::size_t>(a.robot)].model->may_overlap;
-    const std::pair<int, int> pair = std::minmax(a.link, b.link);
-    return a.robot == b.robot && std::ranges::find(pairs, pair) != pairs.end();
-  };
   const auto moves = [&](const Link& l) { return scene.bodies[static_cast<std::size_t>(l.body)].motion == tape::Motion::linked; };
   for (int a = 0; a < std::ssize(links_); ++a) {
     for (int b = a + 1; b < std::ssize(links_); ++b) {
       const Link &first = links_[static_cast<std::size_t>(a)], &second = links_[static_cast<std::size_t>(b)];
-      if (may_overlap(first, second) || (!moves(first) && !moves(second))) continue;
+      if (!start.may_touch(first.robot, first.link, second.robot, second.link) || (!moves(first) && !moves(second))) continue;
       candidates_.push_back({first.robot, first.link, second.robot, second.link, {first.body, second.body}});
       of_candidates_.emplace_back(a, b);
     }

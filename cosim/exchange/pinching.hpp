@@ -15,7 +15,8 @@ struct LinkPair {
 /// nothing of tape, they would meet before the tape is loaded; so they touch in the tape solver as long as that holds.
 class Pinching {
  public:
-  Pinching(const RobotScene& robots, const tape::World& world);
+  /// @param start  Bullet's world then: links that may not touch in it never pinch
+  Pinching(const RobotScene& robots, const tape::World& world, const robot::World& start);
   /// All pairs that could: one of them moves, and they may touch.
   const std::vector<LinkPair>& candidates() const { return candidates_; }
   /// Those that do over a step that starts at `state`. Pairs that touch in Bullet so far go over only while they are apart.

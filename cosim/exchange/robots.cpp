@@ -1,8 +1,11 @@
 #include "cosim/exchange/robots.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "cosim/exchange/exchange.hpp"
 #include "cosim/exchange/proxy.hpp"
@@ -10,8 +13,51 @@
 namespace cosim {
 namespace {
 constexpr double kNever = std::numeric_limits<double>::infinity();
+
+constexpr double kDeep = 5e-3;  // [m] of two robots: `contact_erp` of it a substep is half a metre a second
+constexpr double kOwn = 1e-3;   // [m] of one robot: its model does not fit together better
+
+/// Pairs of links, each once, that stand inside each other by more than is left to Bullet to push apart; the deepest first.
+std::vector<robot::Contact> deep_overlaps(const robot::World& world) {
+  std::vector<robot::Contact> deep;
+  for (const robot::Contact& c : world.overlaps()) {
+    const auto same = [&](const robot::Contact& d) {
+      return std::tie(c.robot_a, c.link_a, c.robot_b, c.link_b) == std::tie(d.robot_a, d.link_a, d.robot_b, d.link_b);
+    };
+    if (c.distance < -(c.robot_a == c.robot_b ? kOwn : kDeep) && std::ranges::none_of(deep, same)) deep.push_back(c);
+  }
+  return deep;
 }
-RobotScript::RobotScript(const RobotPart& robot, const std::vector<double>& events) : robot_(&robot) {
+
+/// Links of one robot that start inside each other are left alone, as an SRDF file would ask for; of two robots they are refused.
+void settle_overlaps(robot::World& world, const RobotScene& robots) {
+  for (const robot::Contact& c : deep_overlaps(world)) {
+    if (c.robot_a == c.robot_b) {
+      world.set_contact(c.robot_a, c.link_a, c.robot_b, c.link_b, false);
+      continue;
+    }
+    const auto& [a, b] = std::tie(robots.robots[static_cast<std::size_t>(c.robot_a)], robots.robots[static_cast<std::size_t>(c.robot_b)]);
+    throw tape::InputError(fmt::format("robots: {} starts {:.1f} mm inside {} (allowed: {:.1f} mm)", body_name(a, c.link_a),
+                                       -1e3 * c.distance, body_name(b, c.link_b), 1e3 * kDeep));
+  }
+}
+
+/// As it stands, before anything is made of overlaps.
+robot::World place(const RobotScene& robots) {
+  robot::World world(robots.world);
+  for (const RobotPart& part : robots.robots) {
+    const int r = world.add_robot(part.model, part.params);
+    robot::VecX v = robot::VecX::Zero(world.dof(r));
+    if (!part.params.fixed_base) v.head<3>() = part.velocity;
+    world.set_state(r, {part.params.X_WB, part.start, v});
+    world.command(r, RobotScript(part, {}).commands_at(0));
+  }
+  return world;
+}
+}  // namespace
+
+RobotScript::RobotScript(const RobotPart& robot, const std::vector<double>& events)
+    : robot_(&robot), followers_(robot::joint_map(*robot.model)) {
   for (const RobotMotion& motion : robot.motions) {
     const double start = motion.start.at(events);
     if (!std::isfinite(start)) continue;
@@ -38,6 +84,12 @@ std::vector<robot::JointCommand> RobotScript::commands_at(double time) const {
       command.velocity = time < motion.until ? at.v[static_cast<Eigen::Index>(k)] : 0;
     }
   }
+  robot::VecX q(target.size()), v(target.size());
+  for (Eigen::Index k = 0; k < q.size(); ++k)
+    q[k] = commands[static_cast<std::size_t>(k)].position, v[k] = commands[static_cast<std::size_t>(k)].velocity;
+  q = followers_.all(followers_.independent_of(q)), v = followers_.map * followers_.independent_of(v);
+  for (Eigen::Index k = 0; k < q.size(); ++k)
+    commands[static_cast<std::size_t>(k)].position = q[k], commands[static_cast<std::size_t>(k)].velocity = v[k];
   return commands;
 }
 
@@ -84,14 +136,21 @@ void place_links(const RobotScene& robots, tape::Scene& scene) {
 }
 
 robot::World make_world(const RobotScene& robots) {
-  robot::World world(robots.world);
-  for (const RobotPart& part : robots.robots) {
-    const int r = world.add_robot(part.model, part.params);
-    robot::VecX v = robot::VecX::Zero(world.dof(r));
-    if (!part.params.fixed_base) v.head<3>() = part.velocity;
-    world.set_state(r, {part.params.X_WB, part.start, v});
-    world.command(r, RobotScript(part, {}).commands_at(0));
-  }
+  robot::World world = place(robots);
+  settle_overlaps(world, robots);
   return world;
+}
+
+std::vector<std::string> notes_on(const RobotScene& robots) {
+  std::vector<std::string> notes;
+  for (const RobotPart& robot : robots.robots)
+    for (const std::string& note : robot.model->notes) notes.push_back(robot.name + ": " + note);
+  for (const robot::Contact& c : deep_overlaps(place(robots))) {
+    const RobotPart& robot = robots.robots[static_cast<std::size_t>(c.robot_a)];
+    notes.push_back(
+        fmt::format("{} and {} start {:.1f} mm inside each other and do not touch in this run; an SRDF file would say so for good",
+                    body_name(robot, c.link_a), body_name(robot, c.link_b), -1e3 * c.distance));
+  }
+  return notes;
 }
 }  // namespace cosim

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "robot/control/trajectory.hpp"
+#include "robot/kinematics/joint_map.hpp"
 #include "robot/world/world.hpp"
 #include "tape/core/settings.hpp"
 #include "tape/model/moment.hpp"
@@ -63,7 +64,7 @@ class RobotScript {
  public:
   /// @param events  [s] when each has happened (tape::Moment); motions after those that have not are left out
   RobotScript(const RobotPart& robot, const std::vector<double>& events);
-  /// [nj] positions and velocities of the motions, the robot's target where none has begun.
+  /// [nj] positions and velocities of the motions, the robot's target where none has begun; joints that follow others follow.
   std::vector<robot::JointCommand> commands_at(double time) const;
   /// [nj] positions of these.
   robot::VecX told_at(double time) const;
@@ -75,6 +76,7 @@ class RobotScript {
     std::vector<int> joints;  // of the model
   };
   const RobotPart* robot_;
+  robot::JointMap followers_;
   std::vector<Motion> motions_;
 };
 
@@ -87,6 +89,10 @@ void add_links(const RobotScene& robots, tape::Scene& scene);
 /// Moves the bodies that are links to where the robots start.
 void place_links(const RobotScene& robots, tape::Scene& scene);
 
-/// Bullet's world of these robots, at its start.
+/// Bullet's world of these robots, at its start. Links of one robot that stand inside each other there do not touch.
+/// @throws tape::InputError where links of two of them stand deep inside each other
 robot::World make_world(const RobotScene& robots);
+
+/// What was assumed of the robots' files and of how they start, a sentence each.
+std::vector<std::string> notes_on(const RobotScene& robots);
 }  // namespace cosim

@@ -8,7 +8,7 @@
 
 namespace cosim {
 namespace {
-constexpr const char* kFormat = "tape states 7";
+constexpr const char* kFormat = "tape states 8";
 
 constexpr const char* kAbout =
     "SI units: m, s, kg, N, N m, rad. x: positions of the strips' vertices in the world. pose: of each body's frame B in the world, the "
@@ -18,8 +18,9 @@ constexpr const char* kAbout =
     "part: 0 free tape, 1 collar, 2 cluster. robots/NAME/: position, velocity, command, effort of each joint in the order of attribute "
     "joints.NAME (rad, m, "
     "N m, N); links: of each link's frame in the world, in the order of attribute links.NAME, the position, then the quaternion w x y z; "
-    "attribute frames.NAME: named frames that are fixed in links, one a line: name, link, pose in it likewise; wrench: of the "
-    "tape side on each link, force, then torque about the link's origin, in world axes, mean over the step. time: s at the end of step. "
+    "attribute frames.NAME: named frames that are fixed in links, one a line: link, pose in it likewise, name; wrench: of the "
+    "tape side on each link, force, then torque about the link's origin, in world axes, mean over the step, NaN of a base that is fixed. "
+    "time: s at the end of step. "
     "mesh: how often strips had been cut; after the k-th cut the arrays of vertices and triangles go on in meshK/. grip_force: of each "
     "grip in the order of attribute grips, on what it holds, at the end "
     "of the step. phase: of the step, counted from 0 in attribute phases; -1: none.";
@@ -49,13 +50,13 @@ std::string lines(const std::vector<RecordedObject>& objects, std::string Record
   return text;
 }
 
-/// One a line: name, index of the link, position, quaternion w x y z.
+/// One a line: index of the link, position, quaternion w x y z, name.
 std::string frame_lines(const std::vector<robot::Frame>& frames) {
   std::ostringstream text;
   text.precision(17);
   for (const robot::Frame& frame : frames) {
     const Eigen::Quaterniond q(frame.X_LF.linear());
-    text << frame.name << ' ' << frame.link << ' ' << frame.X_LF.translation().transpose() << ' ' << q.w() << ' ' << q.vec().transpose()
+    text << frame.link << ' ' << frame.X_LF.translation().transpose() << ' ' << q.w() << ' ' << q.vec().transpose() << ' ' << frame.name
          << '\n';
   }
   return text.str();
@@ -75,8 +76,8 @@ std::vector<robot::Frame> read_frames(const std::string& text, std::size_t links
     robot::Frame frame;
     Vec3 p, v;
     Real w = 0;
-    stream >> frame.name >> frame.link >> p.x() >> p.y() >> p.z() >> w >> v.x() >> v.y() >> v.z();
-    if (!stream || frame.link < 0 || static_cast<std::size_t>(frame.link) >= links)
+    stream >> frame.link >> p.x() >> p.y() >> p.z() >> w >> v.x() >> v.y() >> v.z() >> std::ws;
+    if (!std::getline(stream, frame.name) || frame.link < 0 || static_cast<std::size_t>(frame.link) >= links)
       throw InputError(file + ": damaged: \"" + line + "\" is no frame of a robot");
     frame.X_LF.linear() = Eigen::Quaterniond(w, v.x(), v.y(), v.z()).normalized().toRotationMatrix();
     frame.X_LF.translation() = p;

@@ -24,8 +24,8 @@ class SceneReader {
 
   BothWorlds read() {
     scene_.name = file_["scene"].text_or(file_.path().stem().string());
-    if (scene_.name.find('/') != std::string::npos)
-      file_["scene"].fail("the name of a scene holds no slash: it names the folder of its runs");
+    if (scene_.name.find('/') != std::string::npos || scene_.name == "." || scene_.name == "..")
+      file_["scene"].fail("the name of a scene holds no slash and is neither . nor ..: it names the folder of its runs");
     time();
     file_.read("contact", scene_.contact);
     file_.read("cluster", scene_.cluster);
@@ -107,7 +107,8 @@ class SceneReader {
     scene_.blades.push_back(std::move(blade));
   }
   void claim_name(const std::string& name, const Reader& where) const {
-    if (name.find_first_of(". ") != std::string::npos) where.fail("a name holds neither dots nor spaces");
+    if (name.empty() || name.find_first_of(".: ") != std::string::npos)
+      where.fail("a name is not empty, and holds neither dots, colons nor spaces");
     const auto same = [&](const auto& object) { return object.name == name; };
     if (std::any_of(scene_.strips.begin(), scene_.strips.end(), same) || std::any_of(scene_.bodies.begin(), scene_.bodies.end(), same))
       where.fail("there is a thing named " + name + " already");
@@ -184,6 +185,7 @@ class SceneReader {
   }
 
   void robots() {
+    for (const std::string& name : file_["robots"].keys()) claim_name(name, file_["robots"][name]);
     robots_ = read_robots(file_, scene_.gravity, [&](const std::string& name) { return material(name); });
     try {
       add_links(robots_, scene_);

@@ -3,6 +3,8 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <cmath>
+#include <set>
 
 #include "cosim/scene/pose.hpp"
 #include "robot/control/line_move.hpp"
@@ -34,13 +36,18 @@ std::vector<std::string> joint_names(const robot::RobotModel& model) {
   return names;
 }
 
-/// The joints that a name means; in it a * stands for any text.
+/// The joints that a name means; in one that no joint bears a * stands for any text.
 std::vector<Eigen::Index> find_joints(const Reader& section, const std::string& name, const robot::RobotModel& model) {
+  if (const int exact = model.find_joint(name); exact >= 0) {
+    if (model.joints[static_cast<std::size_t>(exact)].mimic)
+      section[name].fail("the joint follows another: it has no drive and no position of its own");
+    return {exact};
+  }
   const std::vector<std::string> all = joint_names(model);
   std::vector<Eigen::Index> found;
   for (std::size_t k = 0; k < all.size(); ++k)
     if (fnmatch(name.c_str(), all[k].c_str(), 0) == 0) found.push_back(static_cast<Eigen::Index>(k));
-  if (found.empty()) choose(section, name, all);
+  if (found.empty()) choose(section[name], name, all);
   return found;
 }
 
@@ -52,8 +59,14 @@ robot::HandPostures load_postures(const Reader& asked_by, const std::filesystem:
 std::vector<Eigen::Index> joints_of(const robot::HandPostures& postures, const std::string& prefix, const Reader& asked_by,
                                     const robot::RobotModel& model) {
   std::vector<Eigen::Index> joints;
+  const std::vector<std::string> all = joint_names(model);
+  const std::set<std::string, std::less<>> names(all.begin(), all.end());
   for (const std::string& joint : postures.joints_of(prefix))
-    joints.push_back(static_cast<Eigen::Index>(choose(asked_by, joint, joint_names(model))));
+    if (const int k = model.find_joint(joint); k >= 0)
+      joints.push_back(k);
+    else
+      asked_by.fail("the robot has no joint " + joint + " (the prefix '" + prefix + "' and a joint of the postures); " +
+                    suggestion(joint, names));
   return joints;
 }
 
@@ -88,10 +101,17 @@ robot::VecX posed(const Reader& postures, const std::filesystem::path& scene, co
 void require_within_limits(const Reader& section, const robot::RobotModel& model, const robot::JointMap& map, const robot::VecX& q) {
   for (Eigen::Index u = 0; u < map.lower.size(); ++u) {
     const int k = map.independent[static_cast<std::size_t>(u)];
+    const std::string& name = model.joints[static_cast<std::size_t>(k)].name;
     if (q[k] < map.lower[u] || q[k] > map.upper[u])
-      section.fail(model.joints[static_cast<std::size_t>(k)].name + " = " + tape::to_text(q[k]) +
-                   " (allowed: " + tape::to_text(map.lower[u]) + " to " + tape::to_text(map.upper[u]) + ")");
+      (section.is_map() && section[name] ? section[name] : section)
+          .fail(name + " = " + tape::to_text(q[k]) + " (allowed: " + tape::to_text(map.lower[u]) + " to " + tape::to_text(map.upper[u]) +
+                ")");
   }
+}
+
+bool has_drive(const RobotPart& part, int joint) {
+  const robot::DriveGains& gains = part.params.drives[static_cast<std::size_t>(joint)];
+  return gains.kp > 0 || gains.kd > 0;
 }
 
 void read_drives(const Reader& drives, const robot::JointMap& map, RobotPart& part) {
@@ -102,7 +122,9 @@ void read_drives(const Reader& drives, const robot::JointMap& map, RobotPart& pa
   const robot::VecX effort = per_joint(drives["effort"], *part.model, unlimited, Range::positive(), "N m or N");
   for (Eigen::Index k = 0; k < kp.size(); ++k) part.params.drives.push_back({kp[k], kd[k], effort[k]});
   part.params.compensate_gravity = drives["compensate_gravity"].flag_or(false);
+  if (part.params.compensate_gravity && kp.isZero(0) && kd.isZero(0)) drives["compensate_gravity"].fail("no joint has a drive (kp, kd)");
   if (const Reader target = drives["target"]) {
+    if (kp.isZero(0)) target.fail("no joint has a drive that would hold it there (kp)");
     part.target = per_joint(target, *part.model, part.start, kPlace, "rad or m");
     require_within_limits(target, *part.model, map, part.target);
   }
@@ -144,12 +166,15 @@ RobotPart read_robot(const Reader& section, const std::string& name, const Scene
     section["base"].fail("nobody tells a free base where to be, as exchange.schedule = posed asks");
   part.params.friction = section["friction"].number_or(0.5, Range::non_negative(), "");
   part.velocity = section["velocity"].vector_or(part.velocity, kPlace, "m/s");
+  if (const Reader velocity = section["velocity"]; velocity && part.params.fixed_base)
+    velocity.fail("the base is fixed (base: free has one)");
   part.xi = section["xi"].number_or(0, Range::closed(0, 0.01), "m");
   const robot::JointMap map = at_place(section, [&] { return joint_map(*part.model); });
-  const robot::VecX wanted =
-      per_joint(section["joints"], *part.model, posed(section["postures"], file.path(), *part.model), kPlace, "rad or m");
-  part.start = map.all(map.independent_of(wanted).cwiseMax(map.lower).cwiseMin(map.upper));
+  const robot::VecX postures = posed(section["postures"], file.path(), *part.model);
+  const robot::VecX unless_set = map.all(map.independent_of(postures).cwiseMax(map.lower).cwiseMin(map.upper));
+  const robot::VecX wanted = per_joint(section["joints"], *part.model, unless_set, kPlace, "rad or m");
   if (const Reader joints = section["joints"]) require_within_limits(joints, *part.model, map, wanted);
+  part.start = map.all(map.independent_of(wanted));
   read_drives(section["drives"], map, part);
   return part;
 }
@@ -208,12 +233,27 @@ Plan to_frame(const Reader& entry, const Model& model, const robot::Pose& X_WB) 
   };
 }
 
+/// Of the joints that the file names; they must be where it starts.
 Plan along_file(const Reader& entry, const std::filesystem::path& scene, const Model& model) {
+  constexpr Real kNear = 0.1;  // [rad or m] from where a joint is told to be to where the file starts
   const Reader trajectory = entry["trajectory"];
   if (!trajectory) entry.fail("must hold one of joints, posture, frame, trajectory");
-  const auto way =
-      at_place(trajectory, [&] { return robot::read_trajectory(scene.parent_path() / trajectory.text(), *model, joint_names(*model)); });
-  return [=](const robot::VecX&) { return way; };
+  const auto way = at_place(trajectory, [&] {
+    const std::filesystem::path file = scene.parent_path() / trajectory.text();
+    return robot::read_trajectory(file, *model, robot::joints_in_header(file));
+  });
+  std::vector<Eigen::Index> at;
+  for (const std::string& name : way.joints) {
+    at.push_back(model->find_joint(name));
+    if (model->joints[static_cast<std::size_t>(at.back())].mimic) trajectory.fail("joint " + name + " follows another: it has no drive");
+  }
+  return [=](const robot::VecX& q) {
+    for (std::size_t k = 0; k < at.size(); ++k)
+      if (const Real from = q[at[k]], to = way.knots[0][static_cast<Eigen::Index>(k)]; std::fabs(to - from) > kNear)
+        throw robot::InputError("joint " + way.joints[k] + " starts at " + tape::to_text(to) + " in the file, and is told to be at " +
+                                tape::to_text(from) + " (allowed: up to " + tape::to_text(kNear) + " from it): move it there before");
+    return way;
+  };
 }
 
 Plan read_plan(const Reader& entry, const std::filesystem::path& scene, const RobotPart& part) {
@@ -229,9 +269,8 @@ RobotScene read_robots(const SceneFile& file, const Vec3& gravity, const std::fu
   const Reader section = file["robots"];
   file.read("exchange", scene.exchange);
   scene.world.gravity = gravity;
-  scene.world.substep = file["physics"]["substep"].number_or(scene.world.substep, Range::above(0, 0.1), "s");
+  scene.world.substep = file["physics"]["substep"].number_or(scene.world.substep, Range::closed(1e-6, 0.1), "s");
   for (const std::string& name : section.keys()) {
-    if (name.find_first_of(".: ") != std::string::npos) section[name].fail("a name holds neither dots, colons nor spaces");
     RobotPart& part = scene.robots.emplace_back(read_robot(section[name], name, file, scene.exchange.schedule));
     part.material = material(section[name]["material"].text_or(name));
   }
@@ -245,9 +284,17 @@ Lasting add_robot_motion(const Reader& entry, const SceneFile& file, const tape:
   const Reader name = entry["robot"];
   if (names.empty()) name.fail("the scene has no robots");
   RobotPart& part = robots.robots[choose(name, names)];
+  if (!part.motions.empty())
+    if (const Real last = part.motions.back().start.at(events); expected < last)
+      name.fail("starts at " + tape::to_text(expected) + " s, before the motion ahead of it in the script starts at " +
+                tape::to_text(last) + " s");
   const Plan plan = read_plan(entry, file.path(), part);
   const robot::VecX q = RobotScript(part, events).told_at(expected);
   const robot::JointTrajectory planned = at_place(entry, [&] { return plan(q); });
+  if (robots.exchange.schedule != Schedule::posed)
+    for (const std::string& joint : planned.joints)
+      if (!has_drive(part, part.model->find_joint(joint)))
+        entry.fail("joint " + joint + " has no drive that would follow (drives: kp and kd of the robot)");
   const auto with_place = [plan, where = entry.where()](const robot::VecX& from) {
     try {
       return plan(from);

@@ -114,6 +114,7 @@ class Compiler {
     const auto plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-'; };
     if (name.empty() || !std::isalpha(static_cast<unsigned char>(name[0])) || !std::ranges::all_of(name, plain))
       entry.fail("the name of a phase, which files bear, starts with a letter (allowed after it: letters, digits, _, -)");
+    if (name.size() > 64) entry.fail("the name of a phase has up to 64 characters, as files bear it");
     if (std::ranges::find(phases_, name, &Phase::name) != phases_.end()) entry.fail("there is a phase of this name already");
     if (!phases_.empty() && nominal(start) < nominal(phases_.back().start))
       entry.fail("begins before the phase ahead of it, " + phases_.back().name);

@@ -1,6 +1,7 @@
 #include "cosim/scene/shapes.hpp"
 
 #include <array>
+#include <cmath>
 
 #include "cosim/scene/mesh_file.hpp"
 #include "cosim/scene/pose.hpp"
@@ -16,14 +17,20 @@ Real length(const Reader& body, const char* key) { return body[key].number(kSize
 int segments(const Reader& body, int fallback) { return body["segments"].integer_or(fallback, Range::closed(3, 2000)); }
 int bands(const Reader& body) { return body["bands"].integer_or(1, Range::closed(1, 200)); }
 
+void require_whole(const Reader& where, const std::vector<Real>& numbers) {
+  for (const Real n : numbers)
+    if (n != std::round(n)) where.fail("are whole numbers");
+}
 TriangleMesh box(const Reader& body, const fs::path&) {
   const Vec3 cells = body["cells"].vector_or(Vec3::Ones(), Range::closed(1, 200), "");
+  require_whole(body["cells"], {cells[0], cells[1], cells[2]});
   return tape::box_mesh(body["size"].vector(kSize, "m"), cells.cast<int>());
 }
 TriangleMesh sheet(const Reader& body, const fs::path&) {
   const std::vector<Real> size = body["size"].numbers(2, kSize, "m");
   const Reader cells = body["cells"];
   const std::vector<Real> n = cells ? cells.numbers(2, Range::closed(1, 400), "") : std::vector<Real>{1, 1};
+  require_whole(cells, n);
   return tape::sheet_mesh({size[0], size[1]}, {static_cast<int>(n[0]), static_cast<int>(n[1])});
 }
 TriangleMesh cylinder(const Reader& body, const fs::path&) {

@@ -88,15 +88,22 @@ class ReplayCommand : public testing::Test {
     const std::string scene = folder->file("tray.yaml", kScene);
     const Outcome made = tapesim({"run", scene, "--out", at("made"), "--record", at("rec.h5")});
     ASSERT_EQ(made.exit_code, 0) << made.err;
+    start_counting("rec");
     const Outcome posed = replay("rec", {"--set", "exchange.schedule=posed", "--record", at("real.h5")});
     ASSERT_EQ(posed.exit_code, 0) << posed.err;
+    start_counting("real");
   }
   static void TearDownTestSuite() { folder.reset(); }
   static std::string at(const std::string& name) { return (*folder / name).string(); }
 
-  static Outcome replay(const std::string& episode, const std::vector<std::string>& more = {}) {
+  /// At 0.1 s: a recording shorter than the lead-in that is excluded by default has none.
+  static void start_counting(const std::string& episode) {
     std::string text = read(at(episode + ".yaml"));
-    if (text.find("lead_in") == std::string::npos) folder->file(episode + ".yaml", text + "lead_in: 0.1\n");
+    const std::string none = "lead_in: 0\n";
+    ASSERT_NE(text.find(none), std::string::npos);
+    folder->file(episode + ".yaml", text.replace(text.find(none), none.size(), "lead_in: 0.1\n"));
+  }
+  static Outcome replay(const std::string& episode, const std::vector<std::string>& more = {}) {
     std::vector<std::string> arguments{"replay", at(episode + ".yaml"), "--out", at("out_" + episode)};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return tapesim(arguments);
@@ -455,6 +462,19 @@ TEST_F(ReplayCommand, ARecordingNeedsARobotACameraAndAHub) {
   EXPECT_EQ(no_camera.exit_code, 2);
   EXPECT_THAT(no_camera.err, HasSubstr("--record: the scene has no calibrated camera"));
   EXPECT_FALSE(std::filesystem::exists(at("none.h5")));
+  const Outcome twins = record("camera.1.name=ego");
+  EXPECT_EQ(twins.exit_code, 2);
+  EXPECT_THAT(twins.err, HasSubstr("two cameras of the scene are named ego"));
+  const Outcome nowhere = tapesim({"run", at("tray.yaml"), "--out", at("none"), "--record", at("nowhere/none.h5")});
+  EXPECT_EQ(nowhere.exit_code, 2);
+  EXPECT_FALSE(std::filesystem::exists(at("none"))) << "found before the run";
+}
+TEST_F(ReplayCommand, AnEpisodeWithNothingToScoreIsRefusedBeforeTheRun) {
+  variant_text("unscored", {{"lead_in: 0.1", "lead_in: 3"}, {"recording: unscored.h5", "recording: real.h5"}});
+  const Outcome outcome = replay("unscored", kPosed);
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("unscored.yaml"), HasSubstr("lead_in = 3"), HasSubstr("no landmark is visible")));
+  EXPECT_FALSE(std::filesystem::exists(at("out_unscored")));
 }
 TEST_F(ReplayCommand, ARunThatFailsBecomesNoEpisode) {
   const Outcome failed = tapesim({"run", at("tray.yaml"), "--out", at("failed"), "--record", at("failed.h5"), "--set",

@@ -326,6 +326,30 @@ TEST_F(BadInput, ATruncatedOrForeignSnapshotIsRefused) {
   EXPECT_EQ(run("b", {"--resume", (folder / "none.h5").string()}).exit_code, 2);
   EXPECT_FALSE(std::filesystem::exists(folder / "b"));
 }
+TEST_F(BadInput, ASnapshotOfTheEndLeavesNothingToRunAndItsReportAsItIs) {
+  ASSERT_EQ(run("a").exit_code, 0);
+  const std::string before = read(folder / "a" / "report.json"), snapshot = (folder / "a" / "snapshot.h5").string();
+  const Outcome again = run("a", {"--resume", snapshot});
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_THAT(again.err, testing::AllOf(HasSubstr("snapshot.h5"), HasSubstr("0.12"), HasSubstr("nothing is left to run")));
+  EXPECT_EQ(read(folder / "a" / "report.json"), before);
+  EXPECT_EQ(run("a", {"--resume", snapshot, "--set", "time.duration=0.14"}).exit_code, 0);
+}
+TEST_F(BadInput, AnOptionWithoutAValueIsNotAnOptionLeftOut) {
+  for (const char* option : {"--resume", "--out", "--model", "--record"}) {
+    const Outcome outcome = tapesim({"run", scene, option, ""});
+    EXPECT_EQ(outcome.exit_code, 2) << option;
+    EXPECT_THAT(outcome.err, HasSubstr(std::string(option) + ": the value is empty"));
+  }
+}
+TEST_F(BadInput, ACameraThatFollowsNothingIsFoundByCheck) {
+  for (const auto& [camera, says] :
+       {std::pair("{eye: [0, -1, 1], follow: tabel}", "follow = tabel: no thing"), {"{fx: 600, mount: arm}", "mount = arm: no body"}}) {
+    const Outcome outcome = tapesim({"check", folder.file("seen.yaml", std::string(kScene) + "camera: " + camera + "\n")});
+    EXPECT_EQ(outcome.exit_code, 2) << camera;
+    EXPECT_THAT(outcome.err, testing::AllOf(HasSubstr("seen.yaml"), HasSubstr("camera"), HasSubstr(says)));
+  }
+}
 TEST_F(BadInput, AFullDiskLeavesNothingHalfWritten) {
   for (long bytes : {500L, 5000L, 20000L}) {
     Program program({"run", scene, "--out", (folder / "a").string()}, {.file_bytes = bytes});

@@ -1,5 +1,6 @@
 #include "cosim/exchange/exchange.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -171,6 +172,44 @@ TEST(Exchange, ADriveAtItsLimitPressesWithThat) {
   }
   EXPECT_NEAR(mean, -kLimit, 0.02 * kLimit);
 }
+/// A gripper whose second pad follows the first one, which has a drive without a limit; in the file either may come first.
+TEST(Exchange, APadThatFollowsAnotherPressesWithTheirDrivesForce) {
+  constexpr Real kStiff = 1e4;
+  for (const int lead : {0, 1}) {
+    const int follower = 1 - lead;
+    RobotModel model{.name = "gripper"};
+    model.links = {{.name = "base"}, box_link("one", 0.02, Vec3(0.012, 0.012, 0.01)), box_link("two", 0.02, Vec3(0.012, 0.012, 0.01))};
+    model.joints = {joint("one", robot::JointType::prismatic, -Vec3::UnitZ(), Vec3(0, 0, 0.0065)),
+                    joint("two", robot::JointType::prismatic, Vec3::UnitZ(), Vec3(0, 0, -0.0065))};
+    model.joints[1].parent = 0;
+    model.joints[static_cast<std::size_t>(follower)].mimic = robot::Mimic{.joint = lead};
+    RobotScene scene;
+    scene.world.gravity.setZero();
+    scene.robots = {part("gripper", model, Vec3::Zero())};
+    scene.robots[0].params.drives = {{.kp = kStiff, .kd = 100}, {.kp = kStiff, .kd = 100}};
+    scene.robots[0].motions = {stand(lead == 0 ? "one" : "two", 0.003)};
+    tape::Setup setup = free_strip(0.01, 1e-4);
+    setup.scene.contact.kappa = 1e5;
+    Coupled both(setup, scene);
+    for (int k = 0; k < 12; ++k) ASSERT_TRUE(both.step()) << k << ": " << both.report.failure;
+    const Real drive = kStiff * (0.003 - both.bullet().state(0).q[lead]);  // shared by both pads
+    EXPECT_GT(drive, 5) << lead;
+    EXPECT_NEAR(both.link(0, 0).normal.force.z(), drive / 2, 0.02 * drive) << lead;
+    EXPECT_NEAR(both.link(0, 1).normal.force.z(), -drive / 2, 0.02 * drive) << lead;
+  }
+}
+TEST(Exchange, ARecordOfAStateThatAnotherStepperHasMadeShowsThatState) {
+  const RobotScene scene = finger();
+  Coupled first(free_strip(0.01, 1e-4), scene);
+  for (int k = 0; k < 5; ++k) ASSERT_TRUE(first.step());
+  const Coupled fresh(free_strip(0.01, 1e-4), scene);
+  const cosim::RobotRecord known = first.stepper->records(first.state)[0], found = fresh.stepper->records(first.state)[0];
+  EXPECT_GT(known.position[0], 1e-3);
+  EXPECT_EQ(found.position, known.position);
+  EXPECT_EQ(found.velocity, known.velocity);
+  EXPECT_EQ(found.command, known.command);
+  EXPECT_EQ(fresh.stepper->records(fresh.state)[0].position[0], 0);
+}
 /// Two pads on slides close on a strip with 10 N each and open again.
 TEST(Exchange, PadsPinchAStripWithTheirDrivesForceAndLetGo) {
   RobotModel model{.name = "gripper"};
@@ -262,6 +301,38 @@ TEST(Exchange, APairGoesOverToTheTapeSolverOnlyWhereTheBarrierDoesNotActYet) {
     EXPECT_EQ(both.stepper->exchange().pinching, gap > dhat ? 1 : 0) << gap;
     EXPECT_EQ(both.link(0, 0).normal.force.norm(), 0) << gap << ": nothing presses them together";
   }
+}
+TEST(Exchange, ThingsThatStartDeepInsideEachOtherAreRefusedByName) {
+  RobotModel block{.name = "block"}, plate{.name = "plate"};
+  block.links = {box_link("cube", 0.02, Vec3::Constant(0.012))};
+  plate.links = {box_link("slab", 1, Vec3(0.1, 0.08, 0.02))};
+  RobotScene scene;
+  const auto sunk = [&](double depth) {
+    scene.robots = {part("plate", plate, Vec3(0, 0, -0.01)), part("block", block, Vec3(0, 0, 0.006 - depth), false)};
+    return cosim::make_world(scene);
+  };
+  EXPECT_NO_THROW(sunk(0.004));
+  EXPECT_THAT([&] { sunk(0.007); }, testing::ThrowsMessage<tape::InputError>(
+                                        testing::AllOf(testing::HasSubstr("plate:slab"), testing::HasSubstr("block:cube"),
+                                                       testing::HasSubstr("7.0 mm"), testing::HasSubstr("allowed: 5.0 mm"))));
+}
+/// As of robots whose models do not quite fit together, and come without an SRDF file.
+TEST(Exchange, LinksOfOneRobotThatStartInsideEachOtherDoNotTouch) {
+  RobotModel model{.name = "arm"};
+  model.links = {
+      {.name = "base"}, box_link("first", 0.1, Vec3::Constant(0.02)), box_link("second", 0.1, Vec3::Constant(0.02), Vec3(0.015, 0, 0))};
+  model.joints = {joint("one", robot::JointType::continuous, Vec3::UnitY(), Vec3::Zero()),
+                  joint("two", robot::JointType::continuous, Vec3::UnitY(), Vec3::Zero())};
+  model.joints[0].parent = model.joints[1].parent = 0;
+  RobotScene scene;
+  scene.world.gravity.setZero();
+  scene.robots = {part("arm", model, Vec3(0, 0, 0.1))};
+  EXPECT_FALSE(cosim::make_world(scene).may_touch(0, 1, 0, 2));
+  EXPECT_THAT(cosim::notes_on(scene), testing::ElementsAre(testing::HasSubstr("arm:first and arm:second start 5.0 mm inside each other")));
+  scene.robots[0].params.drives = {{.kp = 5, .kd = 0.1}, {.kp = 5, .kd = 0.1}};
+  Coupled both(free_strip(0.01, 1e-4), scene);
+  for (int k = 0; k < 5; ++k) ASSERT_TRUE(both.step()) << both.report.failure;
+  EXPECT_LT(both.bullet().state(0).q.norm(), 1e-9) << "nothing pushes them";
 }
 TEST(Exchange, PosedLinksAreWhereTheyAreToldToBeWhateverTheyPush) {
   RobotScene scene = finger();

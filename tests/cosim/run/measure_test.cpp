@@ -113,6 +113,31 @@ TEST(Measure, TurnsAreWhatAdheresAboutAnAxis) {
   along.along = Vec3::UnitY();
   EXPECT_LT(strip.value(along), 4 * kPerStep - 0.1) << "about another axis";
 }
+/// A plate that a script carries bears the block that lies on it.
+TEST(Measure, ForceOnADrivenBodyIsWhatItBears) {
+  tape::Setup setup = tape::test::strip_setup(tape::test::flat_strip(0.02, 2, Vec3(1, 0, 0)));
+  setup.scene.gravity = Vec3(0, 0, -9.81);
+  setup.newton.velocity_tol = 1e-4;
+  setup.scene.strips[0].velocity = Vec3::Zero();
+  tape::test::add_body(setup, "plate", tape::box_mesh(Vec3(0.06, 0.06, 0.01), {1, 1, 1}), tape::Motion::driven, Vec3(0, 0, -0.005));
+  tape::Body& block =
+      tape::test::add_body(setup, "block", tape::box_mesh(Vec3(0.02, 0.02, 0.02), {1, 1, 1}), tape::Motion::dynamic, Vec3(0, 0, 0.0101));
+  block.mass = 0.05;
+  const tape::World world = tape::World::build(setup);
+  tape::State state = tape::State::start(world);
+  const auto stepper = tape::make_stepper(tape::Backend::cpu, world);
+  tape::StepReport report;
+  for (int k = 0; k < 40; ++k) {
+    report = stepper->step(state);
+    ASSERT_TRUE(report.ok) << report.failure;
+  }
+  const auto force = [&](const char* body) {
+    return cosim::measure({.quantity = Quantity::force, .things = {body}}, world, state, report);
+  };
+  EXPECT_NEAR(force("plate"), 0.05 * 9.81, 0.01 * 0.05 * 9.81);
+  EXPECT_NEAR(force("block"), 0.05 * 9.81, 0.01 * 0.05 * 9.81);
+  EXPECT_LT(report.body_force[0].z(), 0);
+}
 TEST(Measure, PiecesAreWhatHangsTogetherByTriangles) {
   Sealed strip;
   const Claim pieces{.quantity = Quantity::pieces, .things = {"tape"}};

@@ -160,6 +160,8 @@ TEST(Conditions, EachLimitThatIsNotReachedShows) {
       {"retried_steps", [](StepReport& r) { r.substeps = 2; }},
       {"linear_solves_at_their_limit", [](StepReport& r) { r.linear_failures = 1; }},
       {"ccd_queries_at_their_limit", [](StepReport& r) { r.ccd_capped = 1; }},
+      {"unsettled_substeps", [](StepReport& r) { r.unsettled_substeps = 1; }},
+      {"link_mismatch_m", [](StepReport& r) { r.link_mismatch = 1; }},
       {"stop_error_estimate_m", [](StepReport& r) { r.stop_error_estimate = 1; }},
       {"min_gap_m", [](StepReport& r) { r.min_gap = 0; }},
       {"max_strain", [](StepReport& r) { r.max_strain = 0.06; }},

@@ -14,22 +14,23 @@ namespace fs = std::filesystem;
 
 namespace {
 /// A triangle of a strip and one on a body.
-const RecordedMesh kMesh{.scene = "two triangles",
-                         .objects = {{"tape", "vinyl", 0, 1, true}, {"box", "wood", 1, 1, false}},
-                         .triangles = {{0, 1, 2}, {3, 4, 5}},
-                         .rest = {{0, 0}, {1, 0}, {0, 1}, {0, 0}, {0, 0}, {0, 0}},
-                         .body = {-1, -1, -1, 0, 0, 0},
-                         .local = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-                         .strip_vertices = 3,
-                         .pictures = "fov: 30\n",
-                         .robots = {{"arm",
-                                     {"shoulder", "elbow"},
-                                     {"base", "upper", "lower"},
-                                     {{"lens", 2, Eigen::Translation3d(0.1, -0.2, 0.3) * Eigen::AngleAxisd(1.1, Vec3(0.6, 0, -0.8))}}},
-                                    {"stand", {}, {"post"}}},
-                         .settings = "{}",
-                         .grips = {"pull", "tie"},
-                         .phases = {"close", "press"}};
+const RecordedMesh kMesh{
+    .scene = "two triangles",
+    .objects = {{"tape", "vinyl", 0, 1, true}, {"box", "wood", 1, 1, false}},
+    .triangles = {{0, 1, 2}, {3, 4, 5}},
+    .rest = {{0, 0}, {1, 0}, {0, 1}, {0, 0}, {0, 0}, {0, 0}},
+    .body = {-1, -1, -1, 0, 0, 0},
+    .local = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+    .strip_vertices = 3,
+    .pictures = "fov: 30\n",
+    .robots = {{"arm",
+                {"shoulder", "elbow"},
+                {"base", "upper", "lower"},
+                {{"camera lens", 2, Eigen::Translation3d(0.1, -0.2, 0.3) * Eigen::AngleAxisd(1.1, Vec3(0.6, 0, -0.8))}}},
+               {"stand", {}, {"post"}}},
+    .settings = "{}",
+    .grips = {"pull", "tie"},
+    .phases = {"close", "press"}};
 /// A robot whose numbers tell each other apart.
 cosim::RobotRecord robot_record(int joints, int links, double first) {
   const auto count = [&](double from) { return robot::VecX(robot::VecX::LinSpaced(joints, from, from + joints - 1)); };
@@ -96,7 +97,7 @@ TEST_F(StateFile, ReadsBackWhatWasWritten) {
   EXPECT_EQ(reader.mesh().robots, kMesh.robots);
   ASSERT_EQ(reader.mesh().robots[0].frames.size(), 1u);
   const robot::Frame &lens = reader.mesh().robots[0].frames[0], &kept = kMesh.robots[0].frames[0];
-  EXPECT_EQ(lens.name, "lens");
+  EXPECT_EQ(lens.name, "camera lens");
   EXPECT_EQ(lens.link, 2);
   EXPECT_TRUE(lens.X_LF.isApprox(kept.X_LF, 1e-15));
   EXPECT_TRUE(reader.mesh().robots[1].frames.empty());

@@ -143,7 +143,7 @@ TEST(BadScene, AMistakeInTheStripIsRefused) {
       {"strip: {length: 0.1, path: [{arc: 0.1, line: 1}]}", "either line"},
       {"strip: {length: 0.1, path: [{arc: -0.1, angle_deg: 3}]}", "strip.path.0.arc = -0.1"},
       {"strip: {length: 0.1, film: vinyl}", "strip.film = vinyl: no such film"},
-      {"strip: {length: 0.1, name: a.b}", "neither dots nor spaces"},
+      {"strip: {length: 0.1, name: a.b}", "neither dots, colons nor spaces"},
       {"strip: [0.1]", "must be a section"},
   };
   for (const auto& [text, words] : cases) {

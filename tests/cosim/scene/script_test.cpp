@@ -18,7 +18,7 @@ const std::string kArm = R"(film: vinyl_19mm
 strip: {length: 0.1, position: [5, 0, 0]}
 robots:
   arm: {urdf: arm7.urdf, joints: {"arm_joint[1-3]": 0.1, arm_joint4: 0.5}, drives: {kp: {"*": 100, arm_joint1: 300}, kd: 5}}
-  hand: {urdf: hand20_right.urdf, position: [2, 0, 0], postures: {right_: pinch}}
+  hand: {urdf: hand20_right.urdf, position: [2, 0, 0], postures: {right_: pinch}, drives: {kp: 5}}
 )";
 BothWorlds read(const std::string& text) {
   const SceneFile file = SceneFile::parse(text, std::filesystem::path(TAPE_SOURCE_DIR) / "data" / "scenes" / "script.yaml");
@@ -126,10 +126,55 @@ TEST(Script, JointsAreToldNothingBeyondTheirLimits) {
     <joint name="lead" type="revolute"><parent link="base"/><child link="a"/><axis xyz="1 0 0"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
     <joint name="tip" type="revolute"><parent link="a"/><child link="b"/><axis xyz="1 0 0"/><limit lower="-1" upper="1" effort="1" velocity="1"/>
       <mimic joint="lead"/></joint></robot>)";
-  const std::string follows =
-      refusal(kStrip + "robots: {fold: {urdf: " + folded.string() + "}}\nscript: [{robot: fold, joints: {tip: 0.1}, duration: 1}]");
+  const std::string follows = refusal(kStrip + "robots: {fold: {urdf: " + folded.string() +
+                                      ", drives: {kp: 1}}}\nscript: [{robot: fold, joints: {tip: 0.1}, duration: 1}]");
   EXPECT_NE(follows.find("the joint follows another"), std::string::npos) << follows;
   for (const char* says : {"drives.target", "arm_joint2 = -3 (allowed: -2 to 2)"}) EXPECT_NE(held.find(says), std::string::npos) << held;
+}
+/// A link on a joint, and one on a joint that follows it.
+std::string lead_and_tip(const std::string& lead_limits, const std::string& mimic) {
+  const std::string inertial = R"(<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>)";
+  const auto file = std::filesystem::temp_directory_path() / "tape_script_test_lead.urdf";
+  std::ofstream(file) << R"(<robot name="fold"><link name="base"/><link name="a">)" << inertial << R"(</link><link name="b">)" << inertial
+                      << R"(</link><joint name="lead" type="revolute"><parent link="base"/><child link="a"/><limit )" << lead_limits
+                      << R"( effort="1" velocity="1"/></joint><joint name="tip" type="revolute"><parent link="a"/><child link="b"/>)"
+                      << R"(<limit lower="-1" upper="1" effort="1" velocity="1"/><mimic joint="lead" )" << mimic << "/></joint></robot>";
+  return kStrip + "robots: {fold: {urdf: " + file.string() + ", drives: {kp: 1}";
+}
+TEST(Script, JointsThatFollowAreToldTheirLeadersWay) {
+  const RobotPart fold = read(lead_and_tip(R"(lower="-1" upper="1")", R"(multiplier="-0.5" offset="0.1")") +
+                              "}}\nscript: [{robot: fold, joints: {lead: 0.4}, duration: 1}, {robot: fold, frame: b, by: [0, 0, 0]}]")
+                             .robots.robots[0];
+  const RobotScript script(fold, {});
+  for (const double t : {0.0, 0.3, 1.0, 2.0})
+    EXPECT_NEAR(joint(fold, script.told_at(t), "tip"), 0.1 - 0.5 * joint(fold, script.told_at(t), "lead"), 1e-12) << t;
+  EXPECT_EQ(joint(fold, script.told_at(1), "lead"), 0.4);
+}
+TEST(Script, AJointThatMayNotBeAtZeroStartsAtItsNearestLimit) {
+  const RobotPart fold = read(lead_and_tip(R"(lower="-0.9" upper="-0.3")", "") + ", joints: {}}}\n").robots.robots[0];
+  EXPECT_EQ(joint(fold, fold.start, "lead"), -0.3);
+  EXPECT_EQ(joint(fold, fold.start, "tip"), -0.3);
+}
+TEST(Script, WhatARobotCannotDoIsRefused) {
+  const std::string fold = lead_and_tip(R"(lower="-1" upper="1")", "");
+  const auto says = [](const std::string& text, const std::string& what) {
+    const std::string said = refusal(text);
+    EXPECT_NE(said.find(what), std::string::npos) << said;
+  };
+  says(fold + ", joints: {tip: 0.2}}}", "joints.tip = 0.2: the joint follows another");
+  says(fold + ", velocity: [1, 0, 0]}}", "velocity = [1, 0, 0]: the base is fixed");
+  says(kStrip + "robots: {hand: {urdf: hand20_right.urdf}}\nscript: [{robot: hand, posture: open, prefix: right_}]",
+       "has no drive that would follow");
+  says(kArm +
+           "script: [{robot: arm, joints: {arm_joint1: 0.9}, duration: 1, at: 1.5}, {robot: arm, joints: {arm_joint1: 0}, duration: 1, at: "
+           "0.2}]",
+       "starts at 0.2 s, before the motion ahead of it in the script starts at 1.5 s");
+  const auto file = std::filesystem::temp_directory_path() / "tape_script_test_way.csv";
+  std::ofstream(file) << "time_s, arm_joint2 [rad]\n0, 0.9\n0.1, 0.91\n";
+  says(kArm + "script: [{robot: arm, trajectory: " + file.string() + "}]",
+       "joint arm_joint2 starts at 0.9 in the file, and is told to be at 0.1");
+  std::ofstream(file) << "time_s, arm_joint2 [rad]\n0, 0.1\n0.1, 0.12\n";
+  EXPECT_EQ(refusal(kArm + "script: [{robot: arm, trajectory: " + file.string() + "}]"), "") << "the other joints stay";
 }
 /// As a crease: a spring to upright, however the flap starts.
 TEST(Script, DrivesHoldTheirTargetUntilAMotionSaysOtherwise) {
