@@ -100,8 +100,6 @@ void DrivenRobot::begin(const VecX& tau, const Vec3& gravity, Real h) {
     carried(joint_map_.independent) = -joint_map_.map.transpose() * body_.joint_weight(gravity);
     drives_.feed_forward(carried);
   }
-  const VecX inertia = M_.diagonal();
-  friction_.begin(inertia.tail(body_.joints()), h);
 }
 
 void DrivenRobot::move_freely() {

@@ -4,13 +4,10 @@
 
 namespace robot {
 DryFriction::DryFriction(const RobotModel& model)
-    : friction_(static_cast<Eigen::Index>(model.joints.size())), damping_(VecX::Zero(friction_.size())), slipping_(model.joints.size(), 0) {
+    : friction_(static_cast<Eigen::Index>(model.joints.size())), slipping_(model.joints.size(), 0) {
+  constexpr Real kCreep = 1e-7;  // [rad/s or m/s]
   for (Eigen::Index k = 0; k < friction_.size(); ++k) friction_[k] = model.joints[static_cast<std::size_t>(k)].friction;
-}
-
-void DryFriction::begin(const VecX& inertia, Real h) {
-  constexpr Real kStiff = 1e10;  // times the inertia; a Cholesky factorisation does not mind diagonals of different size
-  for (Eigen::Index k = 0; k < friction_.size(); ++k) damping_[k] = friction_[k] > 0 ? kStiff * inertia[k] / h : 0;
+  damping_ = friction_ / kCreep;
 }
 
 DriveLaw DryFriction::law() const {

@@ -5,13 +5,12 @@
 
 namespace robot {
 /// Coulomb friction of a robot's joints, implicit in a substep: f = clamp(-damping v', +- friction), a damper so stiff that what sticks
-/// creeps by 1e-10 of the velocity that its load would give it in a substep.
+/// creeps by at most 1e-7 rad/s or m/s. It is no stiffer, for the sweeps over contacts and limits converge slowly where what sticks holds
+/// something light: what they leave must be little of the friction.
 class DryFriction {
  public:
   explicit DryFriction(const RobotModel& model);
 
-  /// @param inertia  [nj] kg m^2 or kg: what each joint moves alone
-  void begin(const VecX& inertia, Real h);
   DriveLaw law() const;
   /// Brings the active set in line with the velocity v' [nj] at the end of a substep; true if it changed.
   /// @param release  false: joints may only start to slip
