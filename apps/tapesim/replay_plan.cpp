@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cosim/scene/folder_name.hpp"
 #include "cosim/scene/scene_file.hpp"
 #include "tape/model/scene.hpp"
 
@@ -54,8 +55,7 @@ ReplayPlan load_plan(const fs::path& path) {
     }
     file.require_all_used();
   }
-  if (plan.name.empty() || plan.name.find('/') != std::string::npos || plan.name == "." || plan.name == "..")
-    (name ? name : file["episode"]).fail("the name holds no slash and is neither . nor ..: it names the folder of the results");
+  cosim::require_folder_name(name ? name : file["episode"], plan.name);
   return plan;
 }
 }  // namespace tape::tapesim

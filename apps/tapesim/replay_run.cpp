@@ -8,6 +8,7 @@
 #include "apps/tapesim/hub_watch.hpp"
 #include "cosim/exchange/exchange.hpp"
 #include "cosim/run/new_file.hpp"
+#include "cosim/scene/folder_name.hpp"
 #include "cosim/scene/scene_file.hpp"
 #include "tape/core/execution.hpp"
 #include "tape/core/hash.hpp"
@@ -55,8 +56,7 @@ const cosim::LandmarkTrack* LoadedReplay::landmarks() const {
 LoadedReplay load_replay(const std::filesystem::path& episode, const std::string& model, const std::vector<std::string>& overrides) {
   const cosim::SceneFile file = cosim::SceneFile::load(episode);
   cosim::Replay replay = cosim::read_replay(file);
-  if (replay.name.find('/') != std::string::npos || replay.name == "." || replay.name == "..")
-    file["episode"].fail("the name holds no slash and is neither . nor ..: it names a folder of results");
+  cosim::require_folder_name(file["episode"], replay.name);
   SceneArguments scene{.scene = replay.scene.string(), .overrides = replay.overrides, .model = model};
   scene.overrides.insert(scene.overrides.end(), overrides.begin(), overrides.end());
   LoadedWorld loaded = load_world(scene, Rolls::settle, [&](cosim::RunInput& input) { cosim::set_up(replay, input); });

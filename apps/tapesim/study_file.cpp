@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "cosim/scene/folder_name.hpp"
 #include "cosim/scene/scene_file.hpp"
 
 namespace tape::tapesim {
@@ -48,8 +49,7 @@ Study load_study(const std::filesystem::path& path, const std::vector<std::strin
   const cosim::SceneFile file = cosim::SceneFile::load(path);
   Study study;
   study.name = file["study"].text_or(path.stem().string());
-  if (study.name.find('/') != std::string::npos || study.name == "." || study.name == "..")
-    file["study"].fail("the name of a study holds no slash and is neither . nor ..: it names the folder of its results");
+  cosim::require_folder_name(file["study"], study.name);
   const cosim::Reader scene = file["scene"];
   study.scene = cosim::find_file(path, "scenes", scene.text());
   if (study.scene.empty()) scene.fail("no such scene beside the study, above it, or in data/scenes");

@@ -171,6 +171,7 @@ tape::StepReport CoupledStepper::step(tape::State& state, const tape::Exchange&)
 tape::StepReport CoupledStepper::step_both(tape::State& state) {
   const double dt = world_.setup.scene.time.dt;
   report_ = {};
+  standing_.reset();  // wherever a step that fails leaves Bullet
   restore(state);
   see_to_pinching(state);
   follow_script(state);

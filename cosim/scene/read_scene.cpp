@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "cosim/scene/bodies.hpp"
+#include "cosim/scene/folder_name.hpp"
 #include "cosim/scene/pose.hpp"
 #include "cosim/scene/robots.hpp"
 #include "cosim/scene/roll.hpp"
@@ -24,8 +25,7 @@ class SceneReader {
 
   BothWorlds read() {
     scene_.name = file_["scene"].text_or(file_.path().stem().string());
-    if (scene_.name.find('/') != std::string::npos || scene_.name == "." || scene_.name == "..")
-      file_["scene"].fail("the name of a scene holds no slash and is neither . nor ..: it names the folder of its runs");
+    require_folder_name(file_["scene"], scene_.name);
     time();
     file_.read("contact", scene_.contact);
     file_.read("cluster", scene_.cluster);

@@ -189,6 +189,10 @@ TEST_F(StudyCommand, AMistakeInTheStudyExitsWithTwo) {
     EXPECT_THAT(outcome.err, HasSubstr("tapesim: ")) << end;
   }
   EXPECT_EQ(tapesim({"study", (folder / "none.yaml").string()}).exit_code, 2);
+  const std::string good = folder.file("study.yaml", std::string(kStudy) + "against: {finest: true}\n");
+  const Outcome both = tapesim({"study", good, "--set", "time.dt=0.01"});
+  EXPECT_EQ(both.exit_code, 2);
+  EXPECT_THAT(both.err, HasSubstr("a key is either of the grid or set"));
 }
 TEST_F(Render, CtrlCLeavesNoVideo) {
   ASSERT_EQ(tapesim({"run", scene, "--out", (folder / "a").string(), "--set", "time.duration=30"}).exit_code, 0);

@@ -475,6 +475,11 @@ TEST_F(ReplayCommand, AnEpisodeWithNothingToScoreIsRefusedBeforeTheRun) {
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("unscored.yaml"), HasSubstr("lead_in = 3"), HasSubstr("no landmark is visible")));
   EXPECT_FALSE(std::filesystem::exists(at("out_unscored")));
+  variant_text("rare", {{"recording: rare.h5", "recording: real.h5"}});
+  const Outcome rare = replay("rare", {"--set", "time.dt=0.2"});
+  EXPECT_EQ(rare.exit_code, 2);
+  EXPECT_THAT(rare.err, HasSubstr("has a state each 0.2 s"));
+  EXPECT_FALSE(std::filesystem::exists(at("out_rare")));
 }
 TEST_F(ReplayCommand, ARunThatFailsBecomesNoEpisode) {
   const Outcome failed = tapesim({"run", at("tray.yaml"), "--out", at("failed"), "--record", at("failed.h5"), "--set",

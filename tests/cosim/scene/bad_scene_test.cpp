@@ -145,6 +145,10 @@ TEST(BadScene, AMistakeInTheStripIsRefused) {
       {"strip: {length: 0.1, film: vinyl}", "strip.film = vinyl: no such film"},
       {"strip: {length: 0.1, name: a.b}", "neither dots, colons nor spaces"},
       {"strip: [0.1]", "must be a section"},
+      {"scene: ..", "scene = ..: names a folder of results"},
+      {"physics: {substep: 1.0e-12}", "physics.substep = 1.0e-12"},
+      {"bodies: {a: {shape: box, size: [1, 1, 1], cells: [1.5, 1, 1]}}", "cells = [1.5, 1, 1]: are whole numbers"},
+      {"bodies: {\"arm:x\": {shape: box, size: [1, 1, 1]}}", "neither dots, colons nor spaces"},
   };
   for (const auto& [text, words] : cases) {
     const std::string message = refusal(std::string("film: vinyl_19mm\n") + text);
@@ -152,6 +156,8 @@ TEST(BadScene, AMistakeInTheStripIsRefused) {
     EXPECT_NE(message.find(words), std::string::npos) << text << "\n" << message;
   }
   EXPECT_NE(refusal("strip: {length: 0.1}").find("film: missing"), std::string::npos);
+  const std::string twice = refusal("bodies: {arm: {shape: box, size: [1, 1, 1]}}\nrobots: {arm: {urdf: arm7.urdf}}\n");
+  EXPECT_NE(twice.find("robots.arm: there is a thing named arm already"), std::string::npos) << twice;
 }
 
 TEST(BadScene, AnOverrideIsRefusedByItsOwnText) {

@@ -207,6 +207,7 @@ TEST(MeshUri, IsFoundWhereItCanBeMeant) {
   EXPECT_EQ(find("package://My Robot V3.1_URDF/meshes/a b.stl"), mesh);  // no folder has the name
   EXPECT_EQ(find("package://my_robot/meshes/a%20b.stl"), mesh);          // as in an address
   EXPECT_EQ(find("model://my_robot/meshes/a b.stl"), mesh);
+  EXPECT_EQ(find("package://my_robot//meshes//a b.stl"), mesh);
   EXPECT_EQ(find("d.stl"), beside);
   EXPECT_EQ(find("../meshes/a b.stl"), mesh);
   EXPECT_EQ(find("..\\meshes\\a b.stl"), mesh);
