@@ -1,6 +1,7 @@
 # make demo and make test work on a fresh Debian machine. On the command line may stand:
 #   JOBS=2          parallel jobs                     DEMO_STEPS=50   a shorter demo
-#   PRESET=ci       another preset in build/release   BASE=main       lint by clang-tidy only what changed since
+#   PRESET=ci       warnings are errors               BASE=main       lint by clang-tidy only what changed since
+# Other presets have folders of their own: make build-cuda, make build-check.
 PRESET ?= release
 JOBS ?= $(shell nproc)
 BUILD := build/release

@@ -155,5 +155,6 @@ void require_video(const PictureParams& params) {
     settings.height = pinhole->calibration.height;
   }
   require_valid(settings);
+  video::require_ffmpeg();
 }
 }  // namespace tape::movie

@@ -35,7 +35,7 @@ struct InsetParams {
   template <class F>
   void fields(F&& f) {
     f("corner", corner, "", Range::any(), "of the whole picture, where that of the camera stands");
-    f("width", width, "", Range::closed(0.05, 0.9), "of the whole picture's, and so high");
+    f("width", width, "", Range::closed(0.05, 0.9), "share of the whole picture's width, and of its height");
   }
 };
 /// One camera of section `camera`: by where it looks, or calibrated.

@@ -19,7 +19,7 @@ struct Provenance {
 
 /// Every setting of a run, by section. Numbers that are not finite become null, as everywhere in JSON.
 Json settings_json(const Setup& setup, const cosim::RobotScene& robots);
-/// The contents of report.json (design of the command line, part 3).
+/// The contents of report.json (cosim/run/README.md).
 Json report_json(const Provenance& provenance, const World& world, const cosim::RobotScene& robots, const RunSummary& summary);
 
 /// A settings struct by its list of fields.

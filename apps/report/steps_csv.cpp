@@ -25,7 +25,7 @@ void visit_columns(const World& world, const std::vector<Phase>& phases, const c
     f(line.name + "_J", found == r.effects.end() ? 0 : found->energy);
     f(line.name + "_ms", found == r.effects.end() ? 0 : found->ms);
   }
-  f("drive_work_J", row.energy.work), f("energy_balance_J", row.energy.balance);
+  f("work_J", row.energy.work), f("energy_balance_J", row.energy.balance);
   for (std::size_t k = 0; k < world.setup.scene.adhesives.size(); ++k) {
     const AdhesivePair& pair = world.setup.scene.adhesives[k];
     const auto name = [&](int m) { return world.setup.scene.materials[static_cast<std::size_t>(m)].name; };
@@ -52,7 +52,8 @@ void visit_columns(const World& world, const std::vector<Phase>& phases, const c
     const std::vector<std::string>& links = world.setup.scene.articulations[a].links;
     for (std::size_t l = 0; l < links.size(); ++l) {
       const LinkReport link = a < r.articulations.size() ? r.articulations[a].links[l] : LinkReport{};
-      for (const auto& [what, wrench] : {std::pair{"_normal", link.normal}, {"_friction", link.friction}, {"_adhesion", link.adhesion}})
+      for (const auto& [what, wrench] :
+           {std::pair{"_normal", link.normal}, {"_friction", link.friction}, {"_adhesion", link.adhesion}, {"_hold", link.hold}})
         vector("link_" + links[l] + what, "N", wrench.force), vector("link_" + links[l] + what, "Nm", wrench.torque);
     }
   }

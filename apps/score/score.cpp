@@ -35,7 +35,7 @@ std::vector<FrameError> frame_errors(const cosim::LandmarkTrack& real, const cos
                                  camera.name, camera.mount, simulated.mounts.size(), states));
   std::vector<FrameError> frames;
   for (const cosim::Landmark& mark : real.landmarks) {
-    if (!mark.visible || mark.time < start) continue;
+    if (!mark.visible || mark.time < start || mark.time - start > simulated.times.back() + kMaxTimeOffset) continue;
     FrameError frame{.time = mark.time - start, .kind = mark.kind, .estimated = mark.estimated};
     frame.state = nearest(simulated.times, frame.time);
     frame.time_offset = simulated.times[frame.state] - frame.time;
@@ -49,11 +49,13 @@ std::vector<FrameError> frame_errors(const cosim::LandmarkTrack& real, const cos
   return frames;
 }
 
+bool counts(Real time, Real lead_in) { return time >= lead_in - kSameTime; }
+
 RunScore run_score(const std::vector<FrameError>& frames, Real lead_in, Real max_time_offset) {
   RunScore score;
   std::vector<Real> errors;
   for (const FrameError& frame : frames) {
-    if (frame.time < lead_in - kSameTime) continue;
+    if (!counts(frame.time, lead_in)) continue;
     if (!(std::abs(frame.time_offset) <= max_time_offset))
       throw InputError(fmt::format("the landmark at {:g} s is {:g} s from the nearest simulated state (allowed: up to {:g} s)", frame.time,
                                    std::abs(frame.time_offset), max_time_offset));

@@ -34,8 +34,8 @@ struct SimulatedHub {
   std::vector<Pose> mounts = {};  ///< [n] X_WB of the link that carries the camera; empty for one that stands in the world
 };
 
-/// The real landmarks against the simulated ones of the same kind, frame by frame. Landmarks before `start` and invisible ones are left
-/// out.
+/// The real landmarks against the simulated ones of the same kind, frame by frame. Invisible ones are left out, and those before `start` or
+/// more than kMaxTimeOffset after the last simulated state.
 /// @param camera  of the landmarks; its pose at the nearest recorded time counts
 /// @param start   [s] on the episode's clock, at which the simulation's time is 0
 /// @throws InputError where a real landmark cannot be undistorted, nothing was simulated, or the poses of the link that carries the camera
@@ -53,6 +53,8 @@ struct RunScore {
   Real worst_time_offset = 0;  ///< [s] largest distance in time of a counted frame from its simulated state
 };
 inline constexpr Real kMaxTimeOffset = 0.05;  ///< [s]
+/// Whether a frame at this time [s] since the start is counted.
+bool counts(Real time, Real lead_in);
 /// @param lead_in  [s] frames before it are not counted: nothing moves yet
 /// @param max_time_offset  [s] largest distance in time from a frame to its simulated state
 /// @throws InputError if no frame is left to count, or one is further from every simulated state: the run did not last as long

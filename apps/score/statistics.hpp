@@ -16,7 +16,7 @@ struct Proportion {
   Real value() const { return static_cast<Real>(successes) / trials; }
 };
 
-/// Score interval of a proportion p = k/n at 95 %, with z = 1.96:
+/// Score interval of a proportion p = k/n at 95 %, z = 1.959964:
 ///   (p + z^2/2n -+ z sqrt(p (1-p)/n + z^2/4n^2)) / (1 + z^2/n).  Source: [Wilson 1927].
 /// @throws InputError unless 0 <= k <= n and n > 0
 Interval wilson(Proportion p);

@@ -51,7 +51,7 @@ Vec2 normal(std::mt19937_64& random) {
 EpisodeRecorder::EpisodeRecorder(const fs::path& file, const SceneArguments& scene, const LoadedWorld& loaded, Stepper& stepper,
                                  const State& start)
     : file_(stem_of(file)),
-      scene_(scene.scene),
+      scene_(scene),
       params_(loaded.input.episode),
       world_(loaded.world),
       stepper_(dynamic_cast<cosim::CoupledStepper*>(&stepper)),
@@ -76,7 +76,7 @@ EpisodeRecorder::EpisodeRecorder(const fs::path& file, const SceneArguments& sce
       throw InputError("--record: two cameras of the scene are named " + pinhole->name + "; give each its camera.name");
     const cosim::Calibration& c = pinhole->calibration;
     const Pose X_BC{rotation_exp(pinhole->rotation), pinhole->position};
-    mounts_.emplace_back(pinhole->mount, world_, stepper_);
+    mounts_.emplace_back(pinhole->mount, world_, loaded.input.run.robots, stepper_);
     episode_.cameras.push_back(
         {.name = pinhole->name, .calibration = c, .mount = pinhole->mount.empty() ? "world" : pinhole->mount, .poses = {X_BC}});
     episode_.landmarks.push_back({.camera = pinhole->name, .body = "hub", .width = c.width, .height = c.height});
@@ -118,7 +118,8 @@ void EpisodeRecorder::add_landmarks(const State& state) {
     cosim::Landmark mark{.time = state.time, .kind = sight.kind, .visible = false};
     if (const auto ideal = hub_landmark(camera, hub, sight.kind); ideal && sight.share >= kVisible) {
       const Vec2 x = calibration.normalized(*ideal);
-      std::mt19937_64 random(seed_ + 1000003 * static_cast<std::uint64_t>(state.step) + c);
+      std::seed_seq of_picture{seed_, static_cast<std::uint64_t>(state.step), static_cast<std::uint64_t>(c)};
+      std::mt19937_64 random(of_picture);
       mark.pixel = calibration.distorted(*ideal) + params_.pixel_noise * normal(random);
       mark.visible = !cosim::folds_before(calibration.lens, x) && calibration.holds(mark.pixel);
       mark.estimated = sight.share < 1;
@@ -131,14 +132,25 @@ std::string EpisodeRecorder::replay_text() const {
   const std::string name = file_.filename().string();
   const fs::path folder = fs::absolute(file_).parent_path();
   const bool short_recording = world_.setup.scene.time.duration <= cosim::ReplayParams{}.lead_in;
-  std::string text = fmt::format("# {}\nepisode: {}\nscene: {}\nrecording: {}.h5\ncamera: {}\nstart: 0\n{}joints:\n", episode_.origin, name,
-                                 fs::absolute(scene_).lexically_relative(folder).string(), name, episode_.cameras[0].name,
+  std::string text = fmt::format("# {}\nepisode: {}\nscene: {}\nrecording: {}.h5\ncamera: {}\nstart: 0\n{}", episode_.origin, name,
+                                 fs::absolute(scene_.scene).lexically_relative(folder).string(), name, episode_.cameras[0].name,
                                  short_recording ? "lead_in: 0\n" : "");
-  for (const cosim::MotionStream& stream : episode_.streams) {
-    if (std::ranges::any_of(stream.joints, [](const cosim::RecordedJoint& joint) { return joint.unit == cosim::Unit::rad; }))
+  std::vector<std::string> sets = scene_.overrides;
+  if (!scene_.model.empty()) sets.push_back("model=" + scene_.model);
+  if (!sets.empty()) text += "set:\n";
+  for (const std::string& set : sets) text += fmt::format("  {}: \"{}\"\n", set.substr(0, set.find('=')), set.substr(set.find('=') + 1));
+  text += "joints:\n";
+  for (std::size_t s = 0; s < robots_.size(); ++s) {
+    const cosim::MotionStream& stream = episode_.streams[s];
+    const auto& joints = stepper_->robots().robots[static_cast<std::size_t>(robots_[s])].model->joints;
+    if (std::ranges::any_of(joints, [](const robot::Joint& joint) { return !joint.mimic && !slides(joint); }))
       text += fmt::format("  \"{0}:*\": {{drives: \"{0}:*\", unit: rad}}\n", stream.name);
-    for (const cosim::RecordedJoint& joint : stream.joints)
-      if (joint.unit == cosim::Unit::m) text += fmt::format("  \"{0}\": {{drives: \"{0}\", unit: m}}\n", joint.name);
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      if (joints[j].mimic)
+        text += fmt::format("  \"{}\": none\n", stream.joints[j].name);
+      else if (slides(joints[j]))
+        text += fmt::format("  \"{0}\": {{drives: \"{0}\", unit: m}}\n", stream.joints[j].name);
+    }
   }
   return text;
 }

@@ -27,7 +27,8 @@ class EpisodeRecorder {
   void add_landmarks(const State& state);
   std::string replay_text() const;
 
-  std::filesystem::path file_, scene_;
+  std::filesystem::path file_;
+  SceneArguments scene_;
   EpisodeParams params_;
   const World& world_;
   cosim::CoupledStepper* stepper_;

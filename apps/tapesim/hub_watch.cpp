@@ -39,13 +39,14 @@ score::Hub HubShape::at(const Pose& X_WB) const {
   return hub;
 }
 
-Mount::Mount(const std::string& name, const World& world, const cosim::CoupledStepper* stepper) : stepper_(stepper) {
+Mount::Mount(const std::string& name, const World& world, const cosim::RobotScene& robots, const cosim::CoupledStepper* stepper)
+    : stepper_(stepper) {
   if (name == "world" || name.empty()) return;
-  for (int r = 0; stepper && r < stepper->bullet().robots(); ++r) {
-    const std::string prefix = stepper->robots().robots[static_cast<std::size_t>(r)].name + ":";
+  for (std::size_t r = 0; r < robots.robots.size(); ++r) {
+    const std::string prefix = robots.robots[r].name + ":";
     if (!name.starts_with(prefix)) continue;
-    if (const auto frame = stepper->bullet().model(r).find_frame(name.substr(prefix.size())))
-      robot_ = r, link_ = frame->link, X_LF_ = frame->X_LF;
+    if (const auto frame = robots.robots[r].model->find_frame(name.substr(prefix.size())))
+      robot_ = static_cast<int>(r), link_ = frame->link, X_LF_ = frame->X_LF;
   }
   if (robot_ >= 0) return;
   body_ = find_body(world.setup.scene, name);

@@ -22,8 +22,8 @@ class HubShape {
 /// What carries a camera: the world, a body, or a link or frame "robot:link".
 class Mount {
  public:
-  /// @param stepper  of the robots; may be null where there are none  @throws InputError if nothing is named so
-  Mount(const std::string& name, const World& world, const cosim::CoupledStepper* stepper);
+  /// @param stepper  of the robots; null where there are none, or where nobody asks `at`  @throws InputError if nothing is named so
+  Mount(const std::string& name, const World& world, const cosim::RobotScene& robots, const cosim::CoupledStepper* stepper);
   Pose at(const State& state) const;
   bool is_world() const { return body_ < 0 && robot_ < 0; }
 

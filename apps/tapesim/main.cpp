@@ -57,7 +57,7 @@ int act(const Action& chosen) {
     return kInterrupted;
   } catch (const std::bad_alloc& e) {
     say("out of memory: ", e);
-    return kBadInput;
+    return kFailed;
   } catch (const std::exception& e) {
     say("internal error, please report it: ", e);
     return kFailed;

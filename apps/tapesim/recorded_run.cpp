@@ -1,9 +1,23 @@
 #include "apps/tapesim/recorded_run.hpp"
 
+#include <fmt/format.h>
+
 #include "apps/tapesim/interrupt.hpp"
 #include "cosim/exchange/exchange.hpp"
+#include "robot/urdf/describe.hpp"
+#include "tape/core/execution.hpp"
 
 namespace tape::tapesim {
+void add_run(Hash& hash, const LoadedWorld& loaded, const State& start, Backend backend) {
+  const cosim::RobotScene& robots = loaded.input.run.robots;
+  hash.add(fmt::format("{} {} {}\n", program_hash().text(), threads(), runs_on_cuda(backend)));
+  hash.add(report::settings_json(loaded.world.setup, robots).dump() + world_hash(loaded.world) + start.hash());
+  for (const cosim::RobotPart& part : robots.robots) {
+    hash.add(robot::describe(*part.model));
+    for (const auto& [a, b] : part.model->may_overlap) hash.add(fmt::format("{} {}\n", a, b));
+  }
+}
+
 Backend backend_of(const std::string& name) {
   const auto names = enum_names(Backend{});
   for (std::size_t i = 0; i < names.size(); ++i)

@@ -3,8 +3,12 @@
 #include "apps/tapesim/run_folder.hpp"
 #include "apps/tapesim/scene_input.hpp"
 #include "cosim/run/summary.hpp"
+#include "tape/core/hash.hpp"
 
 namespace tape::tapesim {
+/// Adds what decides a run beside the scene's text and what overrides it: program, threads, back end, settings, robots, and the start.
+void add_run(Hash& hash, const LoadedWorld& loaded, const State& start, Backend backend);
+
 /// By a name that the command line has checked.
 Backend backend_of(const std::string& name);
 bool runs_on_cuda(Backend backend);

@@ -75,7 +75,7 @@ void add_render(CLI::App& app, Action& chosen) {
   CLI::App* command = app.add_subcommand("render", "makes a video, with a still of each phase, or stills from a recorded run");
   command->add_option("RUNDIR", arguments->folder, "folder of a run; its state.h5 is read")->required();
   command->add_option("--camera", arguments->camera,
-                      "YAML file with eye, target, up, fov, follow, or with fx, fy, cx, cy, width, height, position, rotation; "
+                      "YAML file with eye, target, up, fov, follow, mount, or with fx, fy, cx, cy, width, height, position, rotation; "
                       "`camera: [{...}, {...}]`: several side by side, those with `inset` in a corner");
   std::vector<std::string> colors;
   for (std::string_view name : enum_names(render::ColorBy{})) colors.emplace_back(name);

@@ -1,14 +1,18 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <fstream>
 #include <limits>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "apps/tapesim/interrupt.hpp"
 #include "apps/tapesim/progress.hpp"
 #include "apps/tapesim/replay_pictures.hpp"
 #include "apps/tapesim/replay_table.hpp"
+#include "apps/video/video.hpp"
 #include "cosim/run/new_file.hpp"
 #include "tape/core/execution.hpp"
 
@@ -35,15 +39,24 @@ struct Slot {
   Case what;
   std::string key;
   ReplayRun run;
+  int steps = 0;
   bool done = false;
 };
+
+/// Whether what a folder holds of a run is of this one.
+bool holds(const fs::path& folder, const ReplayRun& run) {
+  std::ifstream in(folder / "report.json");
+  const auto report = nlohmann::json::parse(in, nullptr, false);
+  return report.is_object() && report.value("state_hash", "") == run.state_hash;
+}
 
 /// The runs of a plan, and what of them is kept from before.
 class ReplayGrid {
  public:
   /// Loads every combination: what is wrong with any is found before the first run.
-  ReplayGrid(ReplayPlan plan, fs::path folder, Backend backend)
-      : plan_(std::move(plan)), folder_(std::move(folder)), backend_(backend), store_(folder_ / "runs.json") {
+  /// @param pictures  they are to be drawn of the runs, whose folders must hold them
+  ReplayGrid(ReplayPlan plan, fs::path folder, Backend backend, bool pictures)
+      : plan_(std::move(plan)), folder_(std::move(folder)), backend_(backend), pictures_(pictures), store_(folder_ / "runs.json") {
     std::set<std::string> names;
     for (const fs::path& episode : plan_.episodes) {
       bool first = true;
@@ -51,6 +64,7 @@ class ReplayGrid {
         const LoadedReplay loaded = load_replay(episode, model, plan_.overrides);
         if (first && !names.insert(loaded.replay.name).second)
           throw InputError(episode.string() + ": another episode is named " + loaded.replay.name + ", too");
+        if (first && pictures_) require_pictures(loaded.replay);
         if (std::exchange(first, false)) introduce(loaded);
         add(loaded, {episode, model});
       }
@@ -61,7 +75,7 @@ class ReplayGrid {
   bool run(const std::string& record) {
     if (!record.empty() && slots_.size() != 1)
       throw InputError("--record: one episode, one model and one repeat make an episode, not more");
-    if (!record.empty()) slots_.front().done = false;
+    if (!record.empty() && slots_.front().done) start_anew(slots_.front());
     cosim::make_folder(folder_);
     remember_interrupts();
     Progress progress("replay " + plan_.name, steps_);
@@ -121,10 +135,17 @@ class ReplayGrid {
   const ReplayPlan& plan() const { return plan_; }
 
  private:
+  void start_anew(Slot& slot) {
+    ReplayRun fresh;
+    fresh.episode = slot.run.episode, fresh.model = slot.run.model, fresh.repeat = slot.run.repeat;
+    slot.run = fresh;
+    slot.done = false;
+    steps_ += slot.steps;
+  }
   void introduce(const LoadedReplay& loaded) {
     const cosim::Replay& replay = loaded.replay;
     so_far_.episodes.push_back(replay.name);
-    so_far_.synthetic = so_far_.synthetic || replay.episode.synthetic();
+    if (replay.episode.synthetic()) so_far_.synthetic.insert(replay.name);
     so_far_.lead_in = std::max(so_far_.lead_in, replay.params.lead_in);
     fmt::print("{}: {}\n", replay.name, replay.episode.origin.empty() ? "of unknown origin" : replay.episode.origin);
     for (const std::string& remark : cosim::remarks(replay.episode)) fmt::print("{}: note: {}\n", replay.name, remark);
@@ -136,8 +157,9 @@ class ReplayGrid {
     for (int repeat = 1; repeat <= plan_.repeats; ++repeat) {
       Slot slot{.what = what, .key = key_of(loaded, repeat, backend_), .run = {}};
       slot.run.episode = loaded.replay.name, slot.run.model = model, slot.run.repeat = repeat;
+      slot.steps = cosim::planned_steps(loaded.loaded.world.setup.scene);
       slot.done = find(store_, slot.key, loaded.replay, slot.run);
-      if (!slot.done) steps_ += cosim::planned_steps(loaded.loaded.world.setup.scene);
+      if (!slot.done || (pictures_ && !holds(folder_of(slot.run), slot.run))) start_anew(slot);
       slots_.push_back(std::move(slot));
     }
   }
@@ -147,6 +169,7 @@ class ReplayGrid {
   ReplayPlan plan_;
   fs::path folder_;
   Backend backend_;
+  bool pictures_;
   RunStore store_;
   std::vector<Slot> slots_;
   ReplayResults so_far_{};  // without its runs
@@ -166,7 +189,10 @@ void print_results(const ReplayPlan& plan, const ReplayResults& results) {
       "replay {}: error of the hub's landmark in the undistorted picture, from {} s on; mean over the frames of a run, its repeats, "
       "then the episodes; 95 % by bootstrap over the episodes; reduction against {}\n",
       plan.name, report::rounded(results.lead_in), results.baseline);
-  if (results.synthetic) fmt::print("The episodes are synthetic: a simulation played the real world. No robot was recorded.\n");
+  if (results.synthetic.size() == results.episodes.size())
+    fmt::print("The episodes are synthetic: a simulation played the real world. No robot was recorded.\n");
+  else if (!results.synthetic.empty())
+    fmt::print("Synthetic, with a simulation in the place of the real world: {}.\n", fmt::join(results.synthetic, ", "));
   fmt::print("{}", report::to_text(model_table(plan, results, report::rounded)));
   for (const ReplayRun& run : results.runs)
     if (!run.failure.empty()) fmt::print("  {} {} {} failed at {}\n", run.episode, run.model, run.repeat, run.failure);
@@ -174,9 +200,11 @@ void print_results(const ReplayPlan& plan, const ReplayResults& results) {
 
 int replay(const ReplayArguments& arguments) {
   set_threads(arguments.threads);
+  if (arguments.video) video::require_ffmpeg();
   ReplayPlan plan = planned(arguments);
   const fs::path folder = arguments.out.empty() ? "out/" + plan.name : arguments.out;
-  ReplayGrid grid(std::move(plan), folder, backend_of(arguments.backend));
+  const bool pictures = arguments.start || arguments.video || !arguments.stills.empty();
+  ReplayGrid grid(std::move(plan), folder, backend_of(arguments.backend), pictures);
   if (arguments.start) {
     grid.draw_starts();
     return kDone;
@@ -195,7 +223,7 @@ int replay(const ReplayArguments& arguments) {
     fmt::print("{}\n", (folder / "replay.{png,svg}").string());
   }
   if (!whole) return kInterrupted;
-  if ((arguments.video || !arguments.stills.empty()) && !grid.draw(arguments.stills, arguments.video)) {
+  if (pictures && !grid.draw(arguments.stills, arguments.video)) {
     fmt::print("interrupted: no video; to make it, give the same command again\n");
     return kInterrupted;
   }

@@ -37,6 +37,11 @@ std::string error_text(const score::FrameError* frame) {
 }
 }  // namespace
 
+void require_pictures(const cosim::Replay& replay) {
+  const cosim::EpisodeCamera camera = camera_of(replay);
+  if (!replay.photographs.files.empty()) (void)score::read_photograph(replay.photographs.files.front(), camera.calibration);
+}
+
 EpisodeEye::EpisodeEye(const LoadedReplay& replay)
     : camera_(camera_of(replay.replay)),
       photographs_(replay.replay.photographs),

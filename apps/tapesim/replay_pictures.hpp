@@ -9,6 +9,9 @@
 #include "apps/tapesim/replay_run.hpp"
 
 namespace tape::tapesim {
+/// @throws InputError where no pictures can be drawn of an episode: it names no camera, or its first photograph is not of that one
+void require_pictures(const cosim::Replay& replay);
+
 /// What the camera of an episode sees, undistorted: of simulated states, and in the photographs that there are.
 class EpisodeEye {
  public:

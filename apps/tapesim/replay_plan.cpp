@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "cosim/scene/folder_name.hpp"
+#include "cosim/scene/node.hpp"
 #include "cosim/scene/scene_file.hpp"
 #include "tape/model/scene.hpp"
 
@@ -26,7 +27,10 @@ void read_episodes(const cosim::Reader& list, const fs::path& from, ReplayPlan& 
 }
 
 void read_models(const cosim::SceneFile& file, ReplayPlan& plan) {
-  for (const cosim::Reader& model : file["models"].items()) plan.models.push_back(all_models()[cosim::choose(model, all_models())]);
+  for (const cosim::Reader& model : file["models"].items()) {
+    plan.models.push_back(all_models()[cosim::choose(model, all_models())]);
+    if (std::ranges::count(plan.models, plan.models.back()) > 1) model.fail("is named already");
+  }
   if (plan.models.empty()) plan.models = {""};
   const cosim::Reader baseline = file["baseline"];
   plan.baseline = baseline ? plan.models[cosim::choose(baseline, plan.models)] : plan.models.front();
@@ -47,11 +51,15 @@ ReplayPlan load_plan(const fs::path& path) {
     read_models(file, plan);
     plan.repeats = file["repeats"].integer_or(1, kRepeats);
     const cosim::Reader set = file["set"], beside = file["beside"];
+    const std::vector<std::string> all = all_models();
     for (const std::string& key : set.keys()) plan.overrides.push_back(key + "=" + set[key].text());
     for (const std::string& whose : beside.keys()) {
       plan.beside.push_back({whose, {}});
-      for (const std::string& model : beside[whose].keys())
-        plan.beside.back().second[model] = beside[whose][model].number(Range::non_negative(), "px");
+      for (const std::string& model : beside[whose].keys()) {
+        const cosim::Reader error = beside[whose][model];
+        if (std::ranges::find(all, model) == all.end()) error.fail("is of no model; " + cosim::suggestion(model, {all.begin(), all.end()}));
+        plan.beside.back().second[model] = error.number(Range::non_negative(), "px");
+      }
     }
     file.require_all_used();
   }

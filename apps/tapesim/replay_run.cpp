@@ -22,6 +22,32 @@ std::string calibration_text(const cosim::Calibration& c) {
   return fmt::format("{} {} {} {} {} {} {} {} {} {} {}", c.fx, c.fy, c.cx, c.cy, c.width, c.height, d.k1, d.k2, d.p1, d.p2, d.k3);
 }
 
+template <class T>
+void add_numbers(Hash& hash, const T& numbers) {
+  hash.add(numbers.data(), static_cast<std::size_t>(numbers.size()) * sizeof numbers[0]);
+}
+/// What was recorded, and what its numbers mean, whatever file it comes from.
+void add(Hash& hash, const cosim::Episode& episode) {
+  for (const cosim::MotionStream& stream : episode.streams) {
+    for (const cosim::RecordedJoint& joint : stream.joints) hash.add(joint.name + ' ' + to_text(joint.unit) + '\n');
+    add_numbers(hash, stream.times);
+    for (const auto* rows : {&stream.measured, &stream.commanded}) {
+      hash.add(fmt::format("{}\n", rows->size()));
+      for (const robot::VecX& row : *rows) add_numbers(hash, row);
+    }
+  }
+  for (const cosim::EpisodeCamera& camera : episode.cameras) {
+    hash.add(fmt::format("{} {} {}\n", camera.name, camera.mount, calibration_text(camera.calibration)));
+    add_numbers(hash, camera.times);
+    for (const Pose& pose : camera.poses) add_numbers(hash, pose.rotation.reshaped()), add_numbers(hash, pose.position);
+  }
+  for (const cosim::LandmarkTrack& track : episode.landmarks) {
+    hash.add(fmt::format("{} {} {} {} {}\n", track.camera, track.body, track.width, track.height, track.undistorted));
+    for (const cosim::Landmark& m : track.landmarks)
+      hash.add(fmt::format("{} {} {} {} {} {}\n", m.time, m.pixel.x(), m.pixel.y(), to_text(m.kind), m.visible, m.estimated));
+  }
+}
+
 void score_frames(const cosim::Replay& replay, ReplayRun& run) {
   if (!run.frames.empty()) run.score = score::run_score(run.frames, replay.params.lead_in);
 }
@@ -35,7 +61,7 @@ std::string errors_csv(const cosim::Replay& replay, const ReplayRun& run) {
     const auto simulated = [&](Real value) { return f.in_front ? to_text(value) : std::string(); };
     table.rows.push_back({to_text(f.time), to_text(f.time_offset), to_text(f.kind), f.estimated ? "1" : "0", to_text(f.real.x()),
                           to_text(f.real.y()), simulated(f.simulated.x()), simulated(f.simulated.y()), simulated(f.error()),
-                          f.in_front && f.time >= replay.params.lead_in ? "1" : "0",
+                          f.in_front && score::counts(f.time, replay.params.lead_in) ? "1" : "0",
                           replay.episode.synthetic() ? "synthetic" : "recorded"});
   }
   return report::to_csv(table);
@@ -64,21 +90,32 @@ LoadedReplay load_replay(const std::filesystem::path& episode, const std::string
   if (result.replay.camera.empty()) return result;
   const cosim::LandmarkTrack* track = result.landmarks();
   if (!track) file["camera"].fail("has no landmarks in the recording; without a camera the episode is replayed and not scored");
-  const Real end = result.replay.episode.common().end;
-  for (const cosim::Landmark& mark : track->landmarks)
-    if (mark.visible && mark.time > end + score::kMaxTimeOffset)
-      file["recording"].fail(fmt::format("has a landmark at {:g} s, after its motions, which end at {:g} s", mark.time, end));
-  const Real start = result.replay.start + result.replay.params.lead_in;
-  const auto counts = [&](const cosim::Landmark& mark) { return mark.visible && mark.time >= start; };
+  const Scene& setup = result.loaded.world.setup.scene;
+  const Real start = result.replay.start, lead_in = result.replay.params.lead_in, between = setup.time.dt;
+  const Real end = cosim::planned_steps(setup) * between + score::kMaxTimeOffset;
+  const auto counts = [&](const cosim::Landmark& mark) {
+    return mark.visible && score::counts(mark.time - start, lead_in) && mark.time - start <= end;
+  };
   if (std::ranges::none_of(track->landmarks, counts))
     file["lead_in"].fail(
-        fmt::format("no landmark is visible from {:g} s of the recording on, where it ends (allowed: at least one)", start));
-  const Real between = result.loaded.world.setup.scene.time.dt;
+        fmt::format("no landmark is visible from {:g} s of the recording on, where it ends, to the end of the motions "
+                    "(allowed: at least one)",
+                    start + lead_in));
+  const cosim::EpisodeCamera& camera = result.replay.episode.camera(result.replay.camera, result.replay.name);
+  for (const cosim::Landmark& mark : track->landmarks) {
+    if (!mark.visible || track->undistorted) continue;
+    try {
+      (void)camera.calibration.undistorted(mark.pixel);
+    } catch (const InputError& e) {
+      file["recording"].fail(fmt::format("the landmark of camera {} at {:g} s: {}", camera.name, mark.time, e.what()));
+    }
+  }
   if (between > 2 * score::kMaxTimeOffset)
     file["scene"].fail(
         fmt::format("has a state each {:g} s (time.dt); landmarks are scored by one within {:g} s", between, score::kMaxTimeOffset));
   try {
     HubShape(result.loaded.world, track->body);
+    Mount(camera.mount, result.loaded.world, result.loaded.input.run.robots, nullptr);
   } catch (const InputError& e) {
     file["scene"].fail(e.what());
   }
@@ -88,16 +125,14 @@ LoadedReplay load_replay(const std::filesystem::path& episode, const std::string
 std::string key_of(const LoadedReplay& replay, int repeat, Backend backend) {
   const cosim::Replay& r = replay.replay;
   Hash hash;
-  const auto add = [&](const std::string& text) { hash.add(text.data(), text.size()); };
-  add(fmt::format("{} {} {} {} {} {}\n", TAPE_VERSION, threads(), runs_on_cuda(backend), repeat, replay.model(), r.start));
-  add(cosim::read_whole_file(r.scene, r.scene.string()));
-  for (const std::filesystem::path& file : r.files) add(cosim::read_whole_file(file, file.string()));
-  add(fmt::format("{}\n", fmt::join(replay.scene.overrides, "\n")));
+  hash.add(fmt::format("{} {} {} {}\n", repeat, replay.model(), r.start, r.camera));
+  hash.add_file(r.scene);
+  hash.add(fmt::format("{}\n", fmt::join(replay.scene.overrides, "\n")));
   for (const cosim::DrivenJoint& joint : r.joints)
-    add(fmt::format("{} {} {} {} {} {} {}\n", joint.recorded, joint.robot, joint.joint, joint.sign, joint.scale, joint.offset,
-                    to_text(joint.follow)));
-  if (!r.camera.empty()) add(r.camera + calibration_text(r.episode.camera(r.camera, r.name).calibration));
-  add(report::settings_json(replay.loaded.world.setup, replay.loaded.input.run.robots).dump() + State::start(replay.loaded.world).hash());
+    hash.add(fmt::format("{} {} {} {} {} {} {}\n", joint.recorded, joint.robot, joint.joint, joint.sign, joint.scale, joint.offset,
+                         to_text(joint.follow)));
+  add(hash, r.episode);
+  add_run(hash, replay.loaded, State::start(replay.loaded.world), backend);
   return hash.text();
 }
 
@@ -141,11 +176,13 @@ bool simulate_replay(LoadedReplay& replay, const std::filesystem::path& path, co
   if (const cosim::LandmarkTrack* track = replay.landmarks()) {
     const std::string& mount = episode.episode.camera(episode.camera, episode.name).mount;
     watch.emplace(HubShape(loaded.world, track->body),
-                  Mount(mount, loaded.world, dynamic_cast<const cosim::CoupledStepper*>(stepper.get())));
+                  Mount(mount, loaded.world, loaded.input.run.robots, dynamic_cast<const cosim::CoupledStepper*>(stepper.get())));
     watch->add(state);
   }
   std::optional<EpisodeRecorder> recorder;
   if (!record.empty()) recorder.emplace(record, replay.scene, loaded, *stepper, state);
+  std::error_code none;
+  std::filesystem::remove(path / "errors.csv", none);  // of an earlier run
   RunFolder folder(path, loaded.world, loaded.input.run.robots, loaded.input.run.phases, state,
                    movie::pictures_text(loaded.input.pictures));
   const cosim::RunLog log = simulate_into(folder, loaded, *stepper, state, -1, [&](const State& now, const cosim::StepRow& row) {
@@ -158,9 +195,14 @@ bool simulate_replay(LoadedReplay& replay, const std::filesystem::path& path, co
   run.simulated = summary.sim_time, run.state_hash = summary.state_hash;
   if (watch && run.failure.empty() && !log.interrupted) {
     run.frames = frame_errors(*replay.landmarks(), episode.episode.camera(episode.camera, episode.name), watch->seen(), episode.start);
-    score_frames(episode, run);
-    summary.figures.emplace_back("mean_error_px", run.score.mean_error);
     cosim::write_text(folder / "errors.csv", errors_csv(episode, run));
+    try {
+      score_frames(episode, run);
+      summary.figures.emplace_back("mean_error_px", run.score.mean_error);
+    } catch (const InputError& e) {  // the hub was never in front of the camera
+      run.frames.clear();
+      run.failure = e.what();
+    }
   }
   commit_run(folder, state, loaded, {replay.scene.scene, TAPE_VERSION, runs_on_cuda(backend) ? "cuda" : "cpu", threads(), 0}, summary);
   if (recorder && run.failure.empty() && !log.interrupted) recorder->commit();

@@ -8,7 +8,13 @@ namespace tape::tapesim {
 namespace {
 constexpr const char* kNone = "";
 
-std::string data_of(const ReplayResults& results) { return results.synthetic ? "synthetic" : "recorded"; }
+std::string data_of(const ReplayResults& results, const std::string& episode) {
+  return results.synthetic.contains(episode) ? "synthetic" : "recorded";
+}
+std::string data_of(const ReplayResults& results) {
+  if (results.synthetic.empty()) return "recorded";
+  return results.synthetic.size() < results.episodes.size() ? "both" : "synthetic";
+}
 
 ModelResult result_of(const ReplayResults& results, const std::string& model) {
   ModelResult result{.model = model, .score = {}, .reduction = {}};
@@ -19,15 +25,18 @@ ModelResult result_of(const ReplayResults& results, const std::string& model) {
     errors.runs.emplace_back();
     for (const ReplayRun* run : results.repeats(model, episode)) {
       ++result.runs;
-      result.seconds += run->seconds, simulated += run->simulated;
       result.failed += !run->failure.empty();
+      if (run->failure.empty()) result.seconds += run->seconds, simulated += run->simulated;
+      result.not_in_front += run->score.not_in_front;
       if (!run->frames.empty()) errors.runs.back().push_back(run->score.mean_error);
     }
-    whole = whole && !errors.runs.back().empty();
+    const std::vector<Real>& known = errors.runs.back();
+    result.episodes.push_back(known.empty() ? std::nullopt : std::optional<Real>(score::mean(known)));
+    whole = whole && !known.empty();
   }
   if (whole) result.score = score::model_score(errors);
   if (simulated > 0) result.per_simulated_second = result.seconds / simulated;
-  if (result.runs > 0) result.seconds /= result.runs;
+  if (result.runs > result.failed) result.seconds /= result.runs - result.failed;
   return result;
 }
 std::vector<score::FrameMean> frames_of(const ReplayResults& results, const std::string& model, const std::string& episode) {
@@ -61,10 +70,11 @@ report::Table model_table(const ReplayPlan& plan, const ReplayResults& results, 
   for (const char* column : {"mean_px", "mean_low_px", "mean_high_px", "reduction_percent", "reduction_low", "reduction_high"})
     table.columns.emplace_back(column);
   for (const auto& [whose, errors] : plan.beside) table.columns.push_back(whose + "_px");
-  for (const char* column : {"s_per_run", "s_per_simulated_s", "runs", "failed", "data"}) table.columns.emplace_back(column);
+  for (const char* column : {"s_per_run", "s_per_simulated_s", "runs", "failed", "not_in_front", "data"})
+    table.columns.emplace_back(column);
   for (const ModelResult& r : results.by_model()) {
     std::vector<std::string> row{r.model};
-    for (std::size_t e = 0; e < results.episodes.size(); ++e) row.push_back(r.score ? number(r.score->episodes[e]) : kNone);
+    for (const std::optional<Real>& error : r.episodes) row.push_back(error ? number(*error) : kNone);
     for (Real value : r.score ? std::vector<Real>{r.score->mean, r.score->interval.low, r.score->interval.high} : std::vector<Real>{})
       row.push_back(number(value));
     if (!r.score) row.insert(row.end(), 3, kNone);
@@ -76,8 +86,8 @@ report::Table model_table(const ReplayPlan& plan, const ReplayResults& results, 
       const auto found = errors.find(r.model);
       row.push_back(found == errors.end() ? kNone : number(found->second));
     }
-    for (const std::string& cell :
-         {number(r.seconds), number(r.per_simulated_second), std::to_string(r.runs), std::to_string(r.failed), data_of(results)})
+    for (const std::string& cell : {number(r.seconds), number(r.per_simulated_second), std::to_string(r.runs), std::to_string(r.failed),
+                                    std::to_string(r.not_in_front), data_of(results)})
       row.push_back(cell);
     table.rows.push_back(row);
   }
@@ -96,7 +106,7 @@ report::Table run_table(const ReplayResults& results) {
     table.rows.push_back({run.episode, run.model, std::to_string(run.repeat), scored ? to_text(s.mean_error) : kNone, cell(s.frames),
                           cell(s.estimated), cell(s.not_in_front), scored ? to_text(s.worst_time_offset) : kNone, to_text(run.seconds),
                           to_text(run.simulated), to_text(run.step_ms.mean), to_text(run.step_ms.p50), to_text(run.step_ms.p95),
-                          to_text(run.newton), std::to_string(run.unmet), run.state_hash, run.failure, data_of(results)});
+                          to_text(run.newton), std::to_string(run.unmet), run.state_hash, run.failure, data_of(results, run.episode)});
   }
   return table;
 }
@@ -106,14 +116,15 @@ report::Table frame_table(const ReplayResults& results) {
   for (const std::string& episode : results.episodes)
     for (const std::string& model : results.models)
       for (const score::FrameMean& frame : frames_of(results, model, episode))
-        table.rows.push_back({episode, model, to_text(frame.time), to_text(frame.error), frame.estimated ? "1" : "0", data_of(results)});
+        table.rows.push_back(
+            {episode, model, to_text(frame.time), to_text(frame.error), frame.estimated ? "1" : "0", data_of(results, episode)});
   return table;
 }
 
 std::vector<std::variant<report::Curves, report::Plot>> replay_page(const ReplayResults& results) {
   std::vector<std::variant<report::Curves, report::Plot>> page;
   for (const std::string& episode : results.episodes) {
-    report::Curves curves{fmt::format("{} ({})", episode, data_of(results)), "time [s]", "error [px]", {}};
+    report::Curves curves{fmt::format("{} ({})", episode, data_of(results, episode)), "time [s]", "error [px]", {}};
     bool any = false;
     for (const std::string& model : results.models) {
       report::Curve curve{model, {}};

@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <set>
 
 #include "apps/report/plot.hpp"
 #include "apps/report/table.hpp"
@@ -10,18 +11,20 @@ namespace tape::tapesim {
 /// What replays of one model have come to.
 struct ModelResult {
   std::string model;
-  std::optional<score::ModelScore> score;      ///< none unless every episode has a run that was scored
-  std::optional<score::Reduction> reduction;   ///< against the baseline, where both are scored
-  Real seconds = 0, per_simulated_second = 0;  ///< of the clock: a run, mean; and for each second of the simulation
+  std::vector<std::optional<Real>> episodes = {};  ///< [px] mean over the runs that were scored
+  std::optional<score::ModelScore> score;          ///< none unless every episode has a run that was scored
+  std::optional<score::Reduction> reduction;       ///< against the baseline, where both are scored
+  Real seconds = 0, per_simulated_second = 0;      ///< of the clock: a run that did not fail, mean; and for each second of the simulation
   int runs = 0, failed = 0;
+  int not_in_front = 0;  ///< frames without an error
 };
 
 /// Everything that was run, in the order of models, episodes and repeats.
 struct ReplayResults {
   std::vector<std::string> episodes, models;  ///< by their names
   std::string baseline;
-  bool synthetic = false;  ///< any of the episodes
-  Real lead_in = 0;        ///< [s] longest of the episodes
+  std::set<std::string> synthetic;  ///< episodes that are
+  Real lead_in = 0;                 ///< [s] longest of the episodes
   std::vector<ReplayRun> runs;
 
   std::vector<const ReplayRun*> repeats(const std::string& model, const std::string& episode) const;

@@ -2,17 +2,14 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <memory>
 
-#include "apps/report/json.hpp"
 #include "apps/report/plot.hpp"
 #include "apps/report/table.hpp"
 #include "apps/tapesim/interrupt.hpp"
 #include "apps/tapesim/progress.hpp"
-#include "apps/tapesim/scene_input.hpp"
+#include "apps/tapesim/recorded_run.hpp"
 #include "apps/tapesim/study_store.hpp"
 #include "cosim/exchange/exchange.hpp"
 #include "cosim/run/new_file.hpp"
@@ -30,13 +27,11 @@ LoadedWorld load_combination(const Study& study, const std::vector<std::string>&
 
 /// Of all that decides the outcome of a run, and its time.
 std::string key_of(const Study& study, const std::vector<std::string>& values, const LoadedWorld& loaded, const State& start) {
-  std::ifstream scene(study.scene, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(scene), {}};
-  for (const auto& lines : {study.overrides, values}) text += fmt::format("{}\n", fmt::join(lines, "\n"));
-  text += fmt::format("{} {} {} {}", TAPE_VERSION, threads(), study.reference.measure, study.reference.angle);
-  text += report::settings_json(loaded.world.setup, loaded.input.run.robots).dump() + start.hash();
   Hash hash;
-  hash.add(text.data(), text.size());
+  hash.add_file(study.scene);
+  for (const auto& lines : {study.overrides, values}) hash.add(fmt::format("{}\n", fmt::join(lines, "\n")));
+  hash.add(fmt::format("{} {}\n", study.reference.measure, study.reference.angle));
+  add_run(hash, loaded, start, Backend::cpu);
   return hash.text();
 }
 
@@ -79,13 +74,15 @@ std::vector<std::vector<StudyRun*>> groups_of(const Study& study, std::vector<St
 void find_errors(const Study& study, std::vector<StudyRun>& runs) {
   const bool finest = study.reference.kind == Reference::Kind::finest;
   for (const std::vector<StudyRun*>& group : groups_of(study, runs)) {
-    const StudyRun& last = *group.back();
-    if (finest && !last.measurable()) throw InputError("study " + study.name + ": the finest run failed: " + last.failure);
+    StudyRun& last = *group.back();
+    last.finest = finest && last.measurable();
     std::vector<Real> seconds, errors;
     for (StudyRun* run : group) {
-      if (run->measurable() && !(finest && run == &last))
-        run->error = finest ? distance(study.reference, run->measured, last.measured) : run->measured.error;
-      run->turn_error = turn_distance(run->measured, last.measured);
+      if (run->measurable() && run != &last && last.finest) {
+        run->error = distance(study.reference, run->measured, last.measured);
+        run->turn_error = turn_distance(run->measured, last.measured);
+      }
+      if (run->measurable() && !finest) run->error = run->measured.error;
       seconds.push_back(run->seconds);
       errors.push_back(run->error);
     }
@@ -109,7 +106,7 @@ report::Table make_table(const Study& study, const std::vector<StudyRun>& runs, 
     std::vector<std::string> row = {std::to_string(table.rows.size() + 1)};
     row.insert(row.end(), run.values.begin(), run.values.end());
     if (!figure.empty()) row.push_back(run.measurable() ? number(run.measured.value) : "");
-    const std::string note = run.failure.empty() && std::isnan(run.error) ? "finest" : run.failure;
+    const std::string note = run.finest ? "finest" : run.measurable() && std::isnan(run.error) ? "the finest run failed" : run.failure;
     row.push_back(std::isnan(run.error) ? "" : number(run.error));
     if (turns) row.push_back(std::isnan(run.error) ? "" : number(run.turn_error));
     for (const std::string& cell : {number(run.seconds), number(run.step_ms.mean), number(run.step_ms.p50), number(run.step_ms.p95),
@@ -151,6 +148,7 @@ std::string comparable(const Study& study, std::vector<StudyRun>& runs) {
   const Reference& reference = study.reference;
   std::string text;
   for (const std::vector<StudyRun*>& group : groups_of(study, runs)) {
+    if (!group.back()->finest) continue;
     const Real finest = group.back()->measured.value;
     std::vector<const StudyRun*> chosen;
     for (const std::string& value : study.grid[reference.each].second) {

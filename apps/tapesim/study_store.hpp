@@ -13,6 +13,7 @@ struct StudyRun : RunCost {
   std::vector<std::string> values;
   Real error = std::numeric_limits<Real>::quiet_NaN();
   Real turn_error = 0;  ///< [deg] of the hub, where that is measured
+  bool finest = false;  ///< others are compared with it
   bool pareto = false;
   Measured measured{};
 

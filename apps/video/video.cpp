@@ -54,6 +54,11 @@ void require_valid(const VideoSettings& s) {
     if (value % 2) throw SettingsError(name, std::to_string(value), "an even number of px");
 }
 
+void require_ffmpeg() {
+  Process version({"ffmpeg", "-version"});
+  if (!version.wait()) throw InputError("ffmpeg -version fails: " + version.messages());
+}
+
 struct VideoWriter::Impl {
   struct Part {  // outlives ffmpeg, so that nothing is left behind
     std::filesystem::path path;

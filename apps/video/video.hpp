@@ -21,6 +21,8 @@ struct VideoSettings {
 
 /// @throws SettingsError for a value out of range or an odd size
 void require_valid(const VideoSettings& settings);
+/// @throws InputError where ffmpeg is missing: to be found before anything is simulated for a video
+void require_ffmpeg();
 
 /// H.264 video in an mp4 file that browsers play while they load it, made by the program ffmpeg, which runs beside and reads the
 /// pictures from a socket. The file has a temporary name until `finish`; without `finish` nothing is left behind.

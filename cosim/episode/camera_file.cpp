@@ -20,7 +20,9 @@ Calibration read_matrices(const Reader& root) {
   Calibration calibration{.fx = k[0], .fy = k[4], .cx = k[2], .cy = k[5]};
   calibration.width = root["image_width"].integer(Range::closed(1, 16384), "px");
   calibration.height = root["image_height"].integer(Range::closed(1, 16384), "px");
-  calibration.lens = read_distortion(root["distortion_coefficients"]["data"]);
+  const Reader coefficients = root["distortion_coefficients"]["data"];
+  if (!coefficients) coefficients.fail("missing (allowed: k1, k2, p1, p2 and perhaps k3; all 0 for a lens without distortion)");
+  calibration.lens = read_distortion(coefficients);
   return calibration;
 }
 

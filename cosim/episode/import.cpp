@@ -9,8 +9,9 @@
 
 namespace cosim {
 namespace {
-/// Gaps are judged where the motion is used.
-constexpr robot::TrajectoryFileOptions kAnyGap{.max_gap = std::numeric_limits<Real>::infinity()};
+/// Gaps and joints' limits are judged where the motion is used.
+constexpr Real kAny = std::numeric_limits<Real>::infinity();
+constexpr robot::TrajectoryFileOptions kUnjudged{.max_gap = kAny, .slack = kAny};
 
 /// What the robot's side refuses.
 template <class F>
@@ -32,7 +33,7 @@ robot::JointTrajectory read_columns(const std::filesystem::path& file, const std
     machine.joints.push_back(joint);
     joints.push_back({.joint = column, .column = column});
   }
-  return translated([&] { return robot::read_table(file, machine, time, joints, kAnyGap); });
+  return translated([&] { return robot::read_table(file, machine, time, joints, kUnjudged); });
 }
 
 /// The columns of all joints; none if no joint has one.
@@ -67,7 +68,7 @@ MotionStream import_csv(const std::filesystem::path& file, const std::string& st
 MotionStream import_vendor(const std::filesystem::path& file, const std::string& stream, const robot::RobotModel& model,
                            const std::vector<std::string>& joints, robot::VendorColumns columns, Real period) {
   robot::JointTrajectory recording =
-      translated([&] { return robot::read_vendor_recording(file, model, joints, columns, kAnyGap, period); });
+      translated([&] { return robot::read_vendor_recording(file, model, joints, columns, kUnjudged, period); });
   MotionStream motion{.name = stream, .joints = {}, .times = std::move(recording.times)};
   for (const std::string& joint : joints) motion.joints.push_back({joint, Unit::rad});
   (columns == robot::VendorColumns::recorded ? motion.measured : motion.commanded) = std::move(recording.knots);

@@ -14,23 +14,21 @@ class Importer {
  public:
   Importer(const Reader& section, const fs::path& from) : section_(section), from_(from) {}
 
-  Recording all() {
-    recording_.episode.name = from_.stem().string();
-    recording_.episode.origin = section_["origin"].text_or("");
+  Episode all() {
+    episode_.name = from_.stem().string();
+    episode_.origin = section_["origin"].text_or("");
     const Reader motion = section_["motion"];
     if (motion.items().empty()) motion.fail("missing; must be a list of what is imported: {csv: ...}, {lerobot: ...} or {vendor: ...}");
-    for (const Reader& entry : motion.items()) recording_.episode.streams.push_back(stream(entry));
+    for (const Reader& entry : motion.items()) episode_.streams.push_back(stream(entry));
     const Reader cameras = section_["cameras"], landmarks = section_["landmarks"];
-    for (const std::string& name : cameras.keys()) recording_.episode.cameras.push_back(camera(name, cameras[name]));
-    for (const std::string& name : landmarks.keys()) recording_.episode.landmarks.push_back(track(name, landmarks[name]));
-    require_sound(recording_.episode, section_.where());
-    return std::move(recording_);
+    for (const std::string& name : cameras.keys()) episode_.cameras.push_back(camera(name, cameras[name]));
+    for (const std::string& name : landmarks.keys()) episode_.landmarks.push_back(track(name, landmarks[name]));
+    require_sound(episode_, section_.where());
+    return std::move(episode_);
   }
 
  private:
-  fs::path file(const Reader& name, const char* subfolder = "episodes") {
-    return recording_.files.emplace_back(named_file(name, from_, subfolder));
-  }
+  fs::path file(const Reader& name, const char* subfolder = "episodes") const { return named_file(name, from_, subfolder); }
 
   MotionStream stream(const Reader& entry) {
     if (const Reader csv = entry["csv"]) return table(csv, entry);
@@ -54,7 +52,6 @@ class Importer {
     for (const std::string& joints : other.keys()) units.of.emplace_back(joints, other[joints].choice<Unit>());
     const fs::path folder = fs::absolute(from_).parent_path() / lerobot.text();
     if (!fs::is_directory(folder)) lerobot.fail("there is no such folder beside this file");
-    for (const char* name : {"info.json", "episodes.jsonl"}) recording_.files.push_back(folder / "meta" / name);
     return import_lerobot(folder, entry["episode"].integer(Range::closed(0, 1e9)), file(entry["table"]), units);
   }
   MotionStream controller(const Reader& vendor, const Reader& entry) {
@@ -75,7 +72,7 @@ class Importer {
   }
   LandmarkTrack track(const std::string& camera, const Reader& section) {
     LandmarkTrack track{.camera = camera, .body = section["body"].text_or("hub")};
-    for (const EpisodeCamera& one : recording_.episode.cameras)
+    for (const EpisodeCamera& one : episode_.cameras)
       if (one.name == camera) track.width = one.calibration.width, track.height = one.calibration.height;
     track.undistorted = section["undistorted"].flag_or(false);
     return import_landmarks(file(section["marks"]), track);
@@ -83,7 +80,7 @@ class Importer {
 
   Reader section_;
   fs::path from_;
-  Recording recording_;
+  Episode episode_;
 };
 }  // namespace
 
@@ -93,9 +90,7 @@ fs::path named_file(const Reader& name, const fs::path& from, const std::string&
   return found;
 }
 
-Recording read_recording(const Reader& recording, const fs::path& from) {
-  if (recording.is_map()) return Importer(recording, from).all();
-  const fs::path found = named_file(recording, from, "episodes");
-  return {read_episode(found), {found}};
+Episode read_recording(const Reader& recording, const fs::path& from) {
+  return recording.is_map() ? Importer(recording, from).all() : read_episode(named_file(recording, from, "episodes"));
 }
 }  // namespace cosim

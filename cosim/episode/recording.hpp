@@ -1,6 +1,5 @@
 #pragma once
 #include <filesystem>
-#include <vector>
 
 #include "cosim/episode/episode.hpp"
 #include "cosim/scene/reader.hpp"
@@ -9,13 +8,8 @@ namespace cosim {
 /// The file that a key names: find_file from EPISODE.yaml.  @throws InputError "file:line: key = value: ..." if there is none
 std::filesystem::path named_file(const Reader& name, const std::filesystem::path& from, const std::string& subfolder);
 
-/// What a replay follows, and the files that it was read from.
-struct Recording {
-  Episode episode;
-  std::vector<std::filesystem::path> files;
-};
 /// `recording` of an EPISODE.yaml (README.md): the name of an episode's HDF5 file, or a section that imports what others recorded.
 /// @param from  EPISODE.yaml, beside which files are looked for
 /// @throws InputError "file:line: key = value: reason", and what read_episode and the imports refuse
-Recording read_recording(const Reader& recording, const std::filesystem::path& from);
+Episode read_recording(const Reader& recording, const std::filesystem::path& from);
 }  // namespace cosim

@@ -37,6 +37,7 @@ DrivenJoint read_driven(const Reader& entry, const std::string& recorded, const 
   if (colon == target.npos) drives.fail("names no joint of a robot (allowed: robot:joint)");
   DrivenJoint driven{.recorded = recorded, .robot = target.substr(0, colon), .joint = target.substr(colon + 1), .where = drives.where()};
   const Reader stated = entry["unit"];
+  driven.unit = unit;
   if (stated.choice<Unit>() != unit) stated.fail("is recorded in " + tape::to_text(unit) + " (allowed: the same)");
   if (const Reader sign = entry["sign"]) {
     driven.sign = sign.number(Range::closed(-1, 1), "");
@@ -184,7 +185,12 @@ void require_driveable(const DrivenJoint& driven, const RobotScene& robots) {
   for (const robot::Joint& joint : part->model->joints) names.insert(joint.name);
   const int joint = part->model->find_joint(driven.joint);
   if (joint < 0) fail("is no joint of that robot; " + suggestion(driven.joint, names));
-  if (part->model->joints[static_cast<std::size_t>(joint)].mimic) fail("follows another joint and cannot be driven");
+  const robot::Joint& moved = part->model->joints[static_cast<std::size_t>(joint)];
+  if (moved.mimic) fail("follows another joint and cannot be driven");
+  const bool slides = moved.type == robot::JointType::prismatic, lengths = driven.unit == Unit::m || driven.unit == Unit::mm;
+  if (driven.unit != Unit::one && slides != lengths)
+    fail(fmt::format("{} and {} is recorded in {} (allowed: {}, or 1 with a scale)", slides ? "slides," : "turns,", driven.recorded,
+                     tape::to_text(driven.unit), slides ? "m, mm" : "rad, deg"));
 }
 }  // namespace
 
@@ -192,14 +198,15 @@ Replay read_replay(const SceneFile& file) {
   Replay replay;
   replay.name = file["episode"].text();
   replay.scene = named_file(file["scene"], file.path(), "scenes");
-  Recording recording = read_recording(file["recording"], file.path());
-  replay.episode = std::move(recording.episode), replay.files = std::move(recording.files);
+  replay.episode = read_recording(file["recording"], file.path());
   const Reader set = file["set"];
   for (const std::string& key : set.keys()) replay.overrides.push_back(key + "=" + set[key].text());
   file.root().read(replay.params);
   replay.camera = read_camera(file, replay.episode);
   replay.photographs = read_photographs(file, replay.camera);
   const auto [first, last] = replay.episode.common();
+  if (!(first < last))
+    file["recording"].fail(fmt::format("its motions have no time in common: one starts at {:g} s, one ends at {:g} s", first, last));
   replay.start = file["start"].number_or(first, Range::closed(first, last), "s");
   replay.joints = read_joints(file["joints"], replay.episode, replay.params.follow);
   file.require_all_used();

@@ -24,6 +24,7 @@ struct ReplayParams {
 /// A recorded joint that moves one of the scene:  q = sign scale (recorded) + offset, recorded in rad, m or as a share.
 struct DrivenJoint {
   std::string recorded, robot, joint;
+  Unit unit = Unit::rad;  ///< recorded
   Real sign = 1;
   Real scale = 1;   ///< [1], of a share [rad or m]
   Real offset = 0;  ///< [rad or m]
@@ -49,8 +50,7 @@ struct Replay {
   std::filesystem::path scene;
   std::vector<std::string> overrides;  ///< of keys of the scene: "path.to.key=value"
   Episode episode;
-  std::vector<std::filesystem::path> files;  ///< that the episode was read from
-  std::string camera;                        ///< in whose pictures it is scored; its calibration may have been replaced; empty: not scored
+  std::string camera;  ///< in whose pictures it is scored; its calibration may have been replaced; empty: not scored
   Photographs photographs;
   Real start = 0;  ///< [s] on the episode's clock, at which the simulation's time is 0
   ReplayParams params;

@@ -16,6 +16,7 @@ using Eigen::VectorXd;
 using robot::RobotState;
 
 constexpr double kBare = 0.5;            // of the bare robot's inertia, that limited drives leave at least
+constexpr double kHold = 1e5;            // times the bare robot's inertia: as stiff as a joint that friction or a limit holds
 constexpr double kCommandPeriod = 0.01;  // [s] at most from one command to the next
 constexpr double kHeavy = 1e6;           // times the inertia: a link that feels nothing
 /// [N/m] of the hold that closes the gap between the two worlds, as stiff as that of driven bodies.
@@ -73,32 +74,43 @@ CoupledStepper::CoupledStepper(const RobotScene& robots, const tape::World& worl
 
 /// Takes out of the inertia what it owes to drives that have limits: on the diagonal, as each works on its own joint, and so much that what
 /// is left is not less than the bare robot's.
-/// @param T      motions of the robot by independent ones
-/// @param given  by which these have given way to the load
-void CoupledStepper::add_drives(const Part& part, const MatrixXd& bare, const MatrixXd& T, const VectorXd& given,
-                                tape::ArticulationStep& step) const {
-  const double dt = world_.setup.scene.time.dt;
-  const Eigen::Index n = T.cols();
+/// @param held  joints that something else holds (`add_holds`)
+void CoupledStepper::add_drives(const Part& part, const MatrixXd& bare, const std::vector<bool>& held, tape::ArticulationStep& step) const {
+  const Eigen::Index n = bare.rows();
   const VectorXd limit = bullet_.effort_limit(part.robot), effort = bullet_.drive_effort(part.robot);
-  step.drive = step.least = step.most = VectorXd::Zero(n + 1);
   const MatrixXd driven = step.inertia.topLeftCorner(n, n);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const Eigen::Index u = k - (n - std::ssize(part.independent));
-    if (u < 0) continue;  // of a free base
+  VectorXd drive = VectorXd::Zero(n);
+  for (Eigen::Index k = n - std::ssize(part.independent), u = 0; k < n; ++k, ++u) {
     const int joint = part.independent[static_cast<std::size_t>(u)];
-    if (!std::isfinite(limit[joint])) continue;
-    step.drive[k] = std::max(0.0, driven(k, k) - bare(k, k));
+    if (held[static_cast<std::size_t>(u)] || !std::isfinite(limit[joint])) continue;
+    drive[k] = std::max(0.0, driven(k, k) - bare(k, k));
     step.least[k] = effort[joint] - limit[joint], step.most[k] = effort[joint] + limit[joint];
   }
   for (const double share : {1.0, 0.9, 0.7, 0.5, 0.0}) {
-    const MatrixXd left = driven - MatrixXd(share * step.drive.head(n).asDiagonal());
+    const MatrixXd left = driven - MatrixXd(share * drive.asDiagonal());
     if (share > 0 && (left - kBare * bare).llt().info() != Eigen::Success) continue;
-    step.drive *= share;
+    step.drive.head(n) += share * drive;
     step.inertia.topLeftCorner(n, n) = left;
-    const VectorXd unloaded = step.drive.head(n).cwiseProduct(given) / (dt * dt);  // what the load has added to the drives
-    step.least.head(n) += unloaded, step.most.head(n) += unloaded;
     return;
   }
+}
+
+/// Gives joints that stick, or stand at a limit, what holds them, as stiff as kHold times the bare robot. There is one potential for each
+/// joint: of one that sticks and has a drive with limits, that of the stiffer drive matters.
+/// @return [independent joints] whether they are held
+std::vector<bool> CoupledStepper::add_holds(const Part& part, const MatrixXd& bare, tape::ArticulationStep& step) const {
+  const std::vector<robot::JointHold> holds = bullet_.holds(part.robot);
+  const VectorXd limit = bullet_.effort_limit(part.robot);
+  std::vector<bool> held;
+  for (Eigen::Index k = bare.rows() - std::ssize(part.independent), u = 0; k < bare.rows(); ++k, ++u) {
+    const robot::JointHold& hold = holds[static_cast<std::size_t>(u)];
+    const bool driven = std::isfinite(limit[part.independent[static_cast<std::size_t>(u)]]) && step.inertia(k, k) > 2 * bare(k, k);
+    held.push_back(hold.least < hold.most && (hold.stopped || !driven));
+    if (!held.back()) continue;
+    step.drive[k] = kHold * bare(k, k);
+    step.least[k] = hold.effort - hold.most, step.most[k] = hold.effort - hold.least;
+  }
+  return held;
 }
 
 /// What Bullet, which has just made the step under a load, says of a robot: where it would be without the load is taken from how it gives
@@ -120,9 +132,15 @@ tape::ArticulationStep CoupledStepper::predicted(const Part& part, const tape::S
     return (full + full.transpose()) / 2;
   };
   step.inertia.topLeftCorner(n, n) = inertia(true);
+  step.drive = step.least = step.most = VectorXd::Zero(n + 1);
   if (robots_.exchange.schedule == Schedule::inertial) {
-    const VectorXd given = dt * dt * step.inertia.topLeftCorner(n, n).llt().solve(T.transpose() * load);
-    add_drives(part, inertia(false), T, given, step);
+    const MatrixXd bare = inertia(false);
+    const std::vector<bool> held = add_holds(part, bare, step);
+    const MatrixXd whole = step.inertia.topLeftCorner(n, n) + MatrixXd(step.drive.head(n).asDiagonal());
+    const VectorXd given = dt * dt * whole.llt().solve(T.transpose() * load);
+    add_drives(part, bare, held, step);
+    const VectorXd by_load = step.drive.head(n).cwiseProduct(given) / (dt * dt);  // what the load has added to drives and holds
+    step.least.head(n) += by_load, step.most.head(n) += by_load;
     unloaded -= given;
   } else {
     step.inertia *= kHeavy;

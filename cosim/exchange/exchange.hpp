@@ -58,8 +58,8 @@ class CoupledStepper final : public tape::Stepper {
   };
   tape::ArticulationStep predicted(const Part& part, const tape::State& state, const robot::RobotState& before, double dt,
                                    const robot::VecX& load) const;
-  void add_drives(const Part& part, const Eigen::MatrixXd& bare, const Eigen::MatrixXd& T, const Eigen::VectorXd& given,
-                  tape::ArticulationStep& step) const;
+  std::vector<bool> add_holds(const Part& part, const Eigen::MatrixXd& bare, tape::ArticulationStep& step) const;
+  void add_drives(const Part& part, const Eigen::MatrixXd& bare, const std::vector<bool>& held, tape::ArticulationStep& step) const;
   bool rests_on_tape_side(const RobotPart& robot) const;
   std::vector<robot::VecX> forces(const tape::StepReport& report) const;
   std::vector<robot::RobotState> robot_states() const;

@@ -73,23 +73,27 @@ Pinching::Pinching(const RobotScene& robots, const tape::World& world, const rob
       of_candidates_.emplace_back(a, b);
     }
   }
-  for (int t = 0; t < std::ssize(world.assembly.triangles); ++t) {
-    const Index3& v = world.assembly.triangles[static_cast<std::size_t>(t)];
-    if (v[0] >= world.assembly.strip_vertices) break;  // those of strips come first
-    for (int k = 0; k < 3; ++k) {
-      const auto edge = world.assembly.rest[static_cast<std::size_t>(v[k])] - world.assembly.rest[static_cast<std::size_t>(v[(k + 1) % 3])];
-      between_vertices_ = std::max(between_vertices_, edge.norm() / std::sqrt(3.0));
-    }
-  }
 }
 
-/// Vertices of strips near a link, over a step.
-std::vector<int> Pinching::tape_near(const Link& link, const Pose& pose, const robot::World& bullet, const tape::State& state,
+/// [m] No point of a strip, as it may have been cut, is farther from its vertices.
+double Pinching::between_vertices() const {
+  const tape::Assembly& a = world_.assembly;
+  double longest = 0;
+  for (const Index3& v : a.triangles) {
+    if (v[0] >= a.strip_vertices) break;  // those of strips come first
+    for (int k = 0; k < 3; ++k)
+      longest = std::max(longest, (a.rest[static_cast<std::size_t>(v[k])] - a.rest[static_cast<std::size_t>(v[(k + 1) % 3])]).norm());
+  }
+  return longest / std::sqrt(3.0);
+}
+
+/// Vertices of strips within `reach` [m] of a link, over a step.
+std::vector<int> Pinching::tape_near(const Link& link, double reach, const Pose& pose, const robot::World& bullet, const tape::State& state,
                                      const std::vector<Vec3>& x) const {
   const Real dt = world_.setup.scene.time.dt;
   const robot::VecX v = bullet.link_velocity(link.robot, link.link);
   const Real farthest = link.box.center().norm() + link.box.sizes().norm() / 2;
-  const Real reach = kNear + between_vertices_ + dt * (v.head<3>().norm() + v.tail<3>().norm() * farthest);
+  reach += dt * (v.head<3>().norm() + v.tail<3>().norm() * farthest);
   const Box box(link.box.min() - Vec3::Constant(reach), link.box.max() + Vec3::Constant(reach));
   std::vector<int> near;
   for (int i = 0; i < world_.assembly.strip_vertices; ++i) {
@@ -122,8 +126,9 @@ bool Pinching::apart(const Link& a, const Pose& X_a, const Link& b, const Pose& 
 std::vector<LinkPair> Pinching::find(const tape::State& state, const robot::World& bullet) const {
   const std::vector<Vec3> x = vertex_positions(world_, state);
   const auto pose = [&](const Link& l) { return state.bodies[static_cast<std::size_t>(l.body)].pose; };
+  const double reach = kNear + between_vertices();
   std::vector<std::vector<int>> near;
-  for (const Link& link : links_) near.push_back(tape_near(link, pose(link), bullet, state, x));
+  for (const Link& link : links_) near.push_back(tape_near(link, reach, pose(link), bullet, state, x));
   const auto share = [](const std::vector<int>& a, const std::vector<int>& b) {
     return std::ranges::any_of(a, [&](int v) { return std::ranges::binary_search(b, v); });
   };

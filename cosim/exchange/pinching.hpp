@@ -28,7 +28,8 @@ class Pinching {
     tape::TriangleMesh mesh;  ///< [m] in the link's frame
     Eigen::AlignedBox<double, 3> box;
   };
-  std::vector<int> tape_near(const Link& link, const tape::Pose& pose, const robot::World& bullet, const tape::State& state,
+  double between_vertices() const;
+  std::vector<int> tape_near(const Link& link, double reach, const tape::Pose& pose, const robot::World& bullet, const tape::State& state,
                              const std::vector<tape::Vec3>& x) const;
   bool apart(const Link& a, const tape::Pose& X_a, const Link& b, const tape::Pose& X_b) const;
 
@@ -36,6 +37,5 @@ class Pinching {
   std::vector<Link> links_;
   std::vector<LinkPair> candidates_;
   std::vector<tape::Index2> of_candidates_;  ///< indices into links_
-  double between_vertices_ = 0;              ///< [m] no point of a strip is farther from its vertices
 };
 }  // namespace cosim

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 
+#include "cosim/run/cache_folder.hpp"
 #include "robot/model/convex_hull.hpp"
 #include "tape/core/error.hpp"
 #include "tape/model/mesh_check.hpp"
@@ -98,7 +99,7 @@ Proxy make_proxy(const robot::Link& link) {
   for (const robot::Shape& shape : link.collision) {
     robot::TriangleMesh& part = parts.emplace_back(shape.mesh);
     if (part.triangles.size() > kFew || !is_closed(part)) {
-      const robot::TriangleMesh hull = robot::convex_hull(part.vertices, robot::hull_cache());
+      const robot::TriangleMesh hull = robot::convex_hull(part.vertices, cache_folder());
       part = surround(hull);
       proxy.error = std::max(proxy.error, excess(hull.vertices, part));
     }

@@ -1,30 +1,18 @@
 #include "cosim/roll/roll_store.hpp"
 
-#include <cstdlib>
-#include <fstream>
 #include <optional>
 
+#include "cosim/run/cache_folder.hpp"
 #include "cosim/run/new_file.hpp"
 #include "tape/core/error.hpp"
 #include "tape/core/hash.hpp"
 
 namespace cosim {
 namespace {
-/// Of the program that runs: another build may settle rolls otherwise.
-const Hash& program_hash() {
-  static const Hash hash = [] {
-    std::ifstream file("/proc/self/exe", std::ios::binary);
-    Hash h;
-    for (char block[1 << 16]; file.read(block, sizeof block) || file.gcount() > 0;) h.add(block, static_cast<std::size_t>(file.gcount()));
-    return h;
-  }();
-  return hash;
-}
-
 std::filesystem::path file_of(const std::string& settings) {
   Hash hash = program_hash();
-  hash.add(settings.data(), settings.size());
-  return roll_store() / ("roll-" + hash.text() + ".h5");
+  hash.add(settings);
+  return cache_folder() / ("roll-" + hash.text() + ".h5");
 }
 
 /// A file of the store that cannot be read is as good as none.
@@ -46,17 +34,6 @@ void keep(const std::filesystem::path& file, const SettledRoll& roll) {
   }
 }
 }  // namespace
-
-std::filesystem::path roll_store() {
-  const auto variable = [](const char* name) {
-    const char* value = std::getenv(name);
-    return std::filesystem::path(value ? value : "");
-  };
-  if (auto folder = variable("TAPE_CACHE"); !folder.empty()) return folder;
-  if (auto folder = variable("XDG_CACHE_HOME"); !folder.empty()) return folder / "tape";
-  if (auto folder = variable("HOME"); !folder.empty()) return folder / ".cache" / "tape";
-  return std::filesystem::temp_directory_path() / "tape";
-}
 
 void settle_rolls(Setup& setup, const RollOptions& options) {
   for (std::size_t s = 0; s < setup.scene.strips.size(); ++s) {

@@ -81,7 +81,9 @@ void add_waits(const World& world, const RunLog& log, std::vector<Condition>& co
   for (std::size_t k = 0; k < log.events.size(); ++k) {
     const Event& event = log.events[k];
     const Real took = log.end.events[k] - event.start.at(log.end.events);
-    if (std::isfinite(took)) conditions.push_back({to_text(event), took, "before", took < event.timeout - world.setup.scene.time.dt / 2});
+    if (std::isfinite(took))
+      conditions.push_back(
+          {to_text(event), took, "< " + tape::to_text(event.timeout) + " s", took < event.timeout - world.setup.scene.time.dt / 2});
   }
 }
 /// What the scene states: the worst value of the time in which it must be true, that of the last step at least.

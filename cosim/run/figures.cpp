@@ -92,7 +92,7 @@ FigureValues link_force(const World& world, const RunLog& log) {
       Real most = 0;
       for (std::size_t r = 0; r < log.rows.size(); ++r) {
         const LinkReport& link = log.rows[r].report.articulations[a].links[l];
-        const Vec3 force = link.normal.force + link.friction.force + link.adhesion.force;
+        const Vec3 force = link.normal.force + link.friction.force + link.adhesion.force + link.hold.force;
         most = std::max(most, force.norm());
         if (2 * r >= log.rows.size()) sum += force;
       }

@@ -72,21 +72,20 @@ RunLog simulate(World& world, Stepper& stepper, State& state, const RunOptions& 
     const JointPositions joints = coupled ? coupled->joints() : JointPositions{};
     note_events(options.events, world, report, joints, state);
     const EnergyLedger::Entry energy = ledger.after(state, report);
-    std::vector<Real> goals;
-    for (const Goal& goal : options.goals) goals.push_back(measure(goal.claim, world, state, report, joints));
     log.rows.push_back({.step = state.step,
                         .time = state.time,
                         .report = std::move(report),
                         .energy = energy,
-                        .goals = std::move(goals),
                         .phase = phase_of(options.phases, state, world)});
-    if (cut(world, stepper, state, ledger, log.rows.back()) && options.on_cut) options.on_cut();
-    if (options.on_step) options.on_step(state, log.rows.back());
+    StepRow& row = log.rows.back();
+    if (cut(world, stepper, state, ledger, row) && options.on_cut) options.on_cut();
+    for (const Goal& goal : options.goals) row.goals.push_back(measure(goal.claim, world, state, row.report, joints));
+    if (options.on_step) options.on_step(state, row);
     if (clock.due(state.time)) {
       record(log, world, state, options);
       recorded = state.step;
     }
-    log.rows.back().wall = wall();
+    row.wall = wall();
   }
   if (recorded != state.step) record(log, world, state, options);
   log.end = state;

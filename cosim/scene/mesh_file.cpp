@@ -9,8 +9,8 @@
 #include <cctype>
 #include <cstring>
 
-#include "cosim/scene/isolated.hpp"
 #include "cosim/scene/scene_file.hpp"
+#include "robot/urdf/isolated.hpp"
 #include "tape/core/error.hpp"
 
 namespace cosim {
@@ -49,7 +49,7 @@ TriangleMesh parse_mesh(const std::string& bytes, const std::string& extension, 
     throw InputError(asked_by + ": ." + extension + " is no known mesh format (allowed: stl, obj, dae)");
   if (bytes.empty()) throw InputError(asked_by + ": the file is empty");
   const std::size_t megabytes = 200 + bytes.size() / 25'000;  // the importer takes some ten times the size of the file
-  const auto corners = run_isolated([&] { return import_triangles(bytes, format); }, 60, megabytes);
+  const auto corners = robot::run_isolated([&] { return import_triangles(bytes, format); }, 60, megabytes);
   if (!corners) throw InputError(asked_by + ": not a valid " + format + " file: the importer breaks down on it");
   if (corners->starts_with('E')) throw InputError(asked_by + ": not a valid " + format + " file: " + corners->substr(1));
   if (corners->size() == 1) throw InputError(asked_by + ": has no triangles");

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "cosim/scene/bodies.hpp"
 #include "cosim/scene/folder_name.hpp"
+#include "cosim/scene/node.hpp"
 #include "cosim/scene/pose.hpp"
 #include "cosim/scene/robots.hpp"
 #include "cosim/scene/roll.hpp"
@@ -36,6 +38,7 @@ class SceneReader {
     strips();
     bodies();
     robots();
+    require_materials_used();
     for (const Reader& entry : file_["interfaces"].items()) interface(entry);
     model();
     for (const Reader& entry : file_["cutting"]["blades"].items()) blade(entry);
@@ -58,6 +61,18 @@ class SceneReader {
   void materials() {
     const Reader section = file_["materials"];
     for (const std::string& name : section.keys()) section[name].read(scene_.materials[material(name)]);
+  }
+  /// A name that nothing has is a slip of the pen. What says nothing of its material is made of `default`.
+  void require_materials_used() const {
+    std::set<int> used;
+    for (const Strip& strip : scene_.strips) used.insert(strip.material);
+    for (const tape::Body& body : scene_.bodies) used.insert(body.material);
+    for (const RobotPart& robot : robots_.robots) used.insert(robot.material);
+    std::set<std::string, std::less<>> names;
+    for (int m : used) names.insert(scene_.materials[static_cast<std::size_t>(m)].name);
+    const Reader section = file_["materials"];
+    for (const std::string& name : section.keys())
+      if (name != "default" && !names.contains(name)) section[name].fail("nothing is made of it; " + suggestion(name, names));
   }
   /// Index of a material, which is made if there is none of this name.
   int material(const std::string& name) {

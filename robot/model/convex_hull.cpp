@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <Eigen/LU>
-#include <cstdlib>
 #include <fstream>
 #include <optional>
 #include <set>
@@ -124,10 +123,5 @@ TriangleMesh convex_hull(const std::vector<Vec3>& points, const std::filesystem:
   std::optional<Hull> hull = stored(file, points.size());
   if (!hull) store(hull.emplace(compute(points)), file);
   return mesh_of(*hull, points);
-}
-
-std::filesystem::path hull_cache() {
-  const char* folder = std::getenv("TAPE_CACHE");
-  return folder ? folder : "";
 }
 }  // namespace robot

@@ -12,11 +12,8 @@ TriangleMesh convex_hull(const std::vector<Vec3>& points);
 
 /// The same, kept in a file of that folder under a hash of the points. A file that does not hold a closed mesh over the points is written
 /// anew; a folder that cannot be written in is done without, as is an empty name.
-/// @param cache  made if it does not exist; hull_cache() unless the caller has another
+/// @param cache  made if it does not exist
 TriangleMesh convex_hull(const std::vector<Vec3>& points, const std::filesystem::path& cache);
-
-/// $TAPE_CACHE; empty if that is not set.
-std::filesystem::path hull_cache();
 
 /// What is inside the hull by a distance.
 struct ShrunkHull {

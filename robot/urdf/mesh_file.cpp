@@ -7,6 +7,9 @@
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cctype>
+#include <cstring>
+
+#include "robot/urdf/isolated.hpp"
 
 namespace robot {
 namespace {
@@ -16,7 +19,8 @@ std::string extension(const std::filesystem::path& file) {
   return text;
 }
 
-void add(const aiMesh& part, const Mat3& to_link, TriangleMesh& mesh) {
+/// @return false: a face names a vertex that does not exist
+bool add(const aiMesh& part, const Mat3& to_link, TriangleMesh& mesh) {
   const int first = static_cast<int>(mesh.vertices.size());
   const bool turn_over = to_link.determinant() < 0;
   for (unsigned v = 0; v < part.mNumVertices; ++v) {
@@ -24,15 +28,23 @@ void add(const aiMesh& part, const Mat3& to_link, TriangleMesh& mesh) {
     mesh.vertices.push_back(to_link * Vec3(p.x, p.y, p.z));
   }
   for (unsigned f = 0; f < part.mNumFaces; ++f) {
+    const aiFace& face = part.mFaces[f];
     std::array<int, 3> t{};
-    for (unsigned k = 0; k < 3; ++k) t[k] = first + static_cast<int>(part.mFaces[f].mIndices[k]);
+    for (unsigned k = 0; k < 3; ++k) {
+      if (face.mNumIndices != 3 || face.mIndices[k] >= part.mNumVertices) return false;
+      t[k] = first + static_cast<int>(face.mIndices[k]);
+    }
     if (turn_over) std::swap(t[1], t[2]);
     if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) mesh.triangles.push_back(t);
   }
+  return true;
 }
-}  // namespace
-
-TriangleMesh read_mesh(const std::filesystem::path& file, const Vec3& scale, bool honour_up_axis) {
+/// A mesh, or why there is none.
+struct Imported {
+  TriangleMesh mesh;
+  std::string refusal = "";
+};
+Imported import_mesh(const std::filesystem::path& file, const Vec3& scale, bool honour_up_axis) {
   const std::string kind = extension(file);
   const bool gltf = kind == ".gltf" || kind == ".glb", collada = kind == ".dae" || kind == ".zae";
   Assimp::Importer importer;
@@ -42,15 +54,56 @@ TriangleMesh read_mesh(const std::filesystem::path& file, const Vec3& scale, boo
                                                           aiComponent_TEXCOORDS | aiComponent_MATERIALS | aiComponent_BONEWEIGHTS);
   const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_RemoveComponent |
                                                               aiProcess_PreTransformVertices | aiProcess_JoinIdenticalVertices);
-  if (!scene) throw InputError(file.string() + ": cannot be read as a mesh: " + importer.GetErrorString());
+  if (!scene) return {{}, std::string("cannot be read as a mesh: ") + importer.GetErrorString()};
 
   Mat3 up = Mat3::Identity();  // assimp turns COLLADA files to y-up, unless it is told not to
   if (gltf || (collada && honour_up_axis)) up << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  Imported out;
+  for (unsigned m = 0; m < scene->mNumMeshes; ++m)
+    if (!add(*scene->mMeshes[m], scale.asDiagonal() * up, out.mesh)) return {{}, "a face of the mesh names a vertex that does not exist"};
+  if (out.mesh.triangles.empty()) return {{}, "the mesh has no triangle"};
+  for (const Vec3& v : out.mesh.vertices)
+    if (!v.allFinite()) return {{}, "a vertex of the mesh is not finite"};
+  return out;
+}
+
+/// As bytes that go from one process to the other: number of vertices and these, triangles; or a refusal.
+std::string packed(const Imported& from) {
+  if (!from.refusal.empty()) return 'E' + from.refusal;
+  const auto append = [](std::string& to, const auto* data, std::size_t count) {
+    to.append(reinterpret_cast<const char*>(data), count * sizeof *data);
+  };
+  const std::size_t vertices = from.mesh.vertices.size();
+  std::string bytes = "M";
+  append(bytes, &vertices, 1);
+  for (const Vec3& v : from.mesh.vertices) append(bytes, v.data(), 3);
+  for (const auto& t : from.mesh.triangles) append(bytes, t.data(), 3);
+  return bytes;
+}
+TriangleMesh unpacked(const std::string& bytes, const std::string& name) {
+  if (bytes[0] == 'E') throw InputError(name + ": " + bytes.substr(1));
+  const char* at = bytes.data() + 1;
+  const auto take = [&](auto* to, std::size_t count) {
+    std::memcpy(to, at, count * sizeof *to);
+    at += count * sizeof *to;
+  };
+  std::size_t vertices = 0;
+  take(&vertices, 1);
   TriangleMesh mesh;
-  for (unsigned m = 0; m < scene->mNumMeshes; ++m) add(*scene->mMeshes[m], scale.asDiagonal() * up, mesh);
-  if (mesh.triangles.empty()) throw InputError(file.string() + ": the mesh has no triangle");
-  for (const Vec3& v : mesh.vertices)
-    if (!v.allFinite()) throw InputError(file.string() + ": a vertex of the mesh is not finite");
+  mesh.vertices.resize(vertices);
+  for (Vec3& v : mesh.vertices) take(v.data(), 3);
+  std::array<int, 3> t{};
+  for (const char* const end = bytes.data() + bytes.size(); at < end; mesh.triangles.push_back(t)) take(t.data(), 3);
   return mesh;
+}
+}  // namespace
+
+TriangleMesh read_mesh(const std::filesystem::path& file, const Vec3& scale, bool honour_up_axis) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  const std::size_t megabytes = 200 + (error ? 0 : size / 25'000);  // the importer takes some ten times the size of the file
+  const auto bytes = run_isolated([&] { return packed(import_mesh(file, scale, honour_up_axis)); }, 60, megabytes);
+  if (!bytes) throw InputError(file.string() + ": cannot be read as a mesh: the importer breaks down on it");
+  return unpacked(*bytes, file.string());
 }
 }  // namespace robot

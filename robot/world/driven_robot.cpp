@@ -1,10 +1,13 @@
 #include "robot/world/driven_robot.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace robot {
 DrivenRobot::DrivenRobot(int index, std::shared_ptr<const RobotModel> model, const RobotParams& params)
     : drive_impulse(VecX::Zero(static_cast<Eigen::Index>(model->joints.size()))),
+      friction_impulse(drive_impulse),
+      limit_impulse(drive_impulse),
       body_(index, model, params.X_WB, params.fixed_base),
       drives_(*model, params.drives),
       friction_(*model),
@@ -27,6 +30,7 @@ void DrivenRobot::add_limits() {
     if (std::isinf(joint.lower) && std::isinf(joint.upper)) continue;
     constraints_.push_back(std::make_unique<btMultiBodyJointLimitConstraint>(&body_.bullet(), k, joint.lower, joint.upper));
     constraints_.back()->setMaxAppliedImpulse(BT_LARGE_FLOAT);
+    constraints_.back()->finalizeMultiDof();  // Bullet does so when it first acts; we ask for its impulse before
   }
 }
 
@@ -86,6 +90,34 @@ MatX DrivenRobot::response(Real h, int count, bool drives) const {
   return motions_ * S * motions_.transpose();
 }
 
+/// Friction holds a joint where all that moves with it and has friction sticks; a limit, where it has acted in the step or the joint stands
+/// at it.
+std::vector<JointHold> DrivenRobot::holds(Real dt) const {
+  constexpr Real kAny = std::numeric_limits<Real>::infinity();
+  constexpr Real kAt = 1e-5;  // [rad or m]
+  const VecX q = body_.q();
+  std::vector<JointHold> holds(joint_map_.independent.size());
+  for (std::size_t u = 0; u < holds.size(); ++u) {
+    JointHold& hold = holds[u];
+    Real friction = 0, exerted = 0;
+    bool sticks = true;
+    for (Eigen::Index k = 0; k < q.size(); ++k) {
+      const Real share = joint_map_.map(k, static_cast<Eigen::Index>(u));
+      if (share == 0) continue;
+      const Joint& joint = body_.model().joints[static_cast<std::size_t>(k)];
+      friction += std::abs(share) * friction_.friction()[k];
+      exerted += share * friction_impulse[k] / dt;
+      sticks &= friction_.friction()[k] == 0 || friction_.slipping()[static_cast<std::size_t>(k)] == 0;
+      hold.effort += share * limit_impulse[k] / dt;
+      if (limit_impulse[k] > 0 || q[k] <= joint.lower + kAt) (share > 0 ? hold.most : hold.least) = std::copysign(kAny, share);
+      if (limit_impulse[k] < 0 || q[k] >= joint.upper - kAt) (share > 0 ? hold.least : hold.most) = std::copysign(kAny, -share);
+    }
+    hold.stopped = hold.least < hold.most;
+    if (sticks && friction > 0) hold.effort += exerted, hold.least -= friction, hold.most += friction;
+  }
+  return holds;
+}
+
 void DrivenRobot::begin(const VecX& tau, const Vec3& gravity, Real h) {
   h_ = h;
   gravity_ = gravity;
@@ -105,12 +137,14 @@ void DrivenRobot::begin(const VecX& tau, const Vec3& gravity, Real h) {
 void DrivenRobot::move_freely() {
   constexpr int kMidpoints = 3;  // evaluations of the Coriolis forces at the mean velocity: an error of (h omega)^3
   law_ = drives_.law(q_, h_);
-  const DriveLaw friction = friction_.law();
-  K_.compute(independent(M_ + h_ * on_joints(law_.damping + friction.damping + viscous_)));
+  friction_law_ = friction_.law();
+  K_.compute(independent(M_ + h_ * on_joints(law_.damping + friction_law_.damping + viscous_)));
   impulse_response_.resize(0, 0);
+  for (const auto& limit : constraints_)  // Bullet leaves the impulses of rows that it does not make
+    for (int row = 0; row < limit->getNumRows(); ++row) limit->internalSetAppliedImpulse(row, 0);
 
   VecX drive = VecX::Zero(body_.dof());
-  drive.tail(body_.joints()) = h_ * (law_.force + friction.force);
+  drive.tail(body_.joints()) = h_ * (law_.force + friction_law_.force);
   v_free_ = v_start_;
   for (int i = 0; i < kMidpoints; ++i) {
     const VecX a = body_.acceleration((v_start_ + v_free_) / 2, tau_, gravity_);
@@ -135,7 +169,10 @@ void DrivenRobot::set_drift() {
 }
 
 void DrivenRobot::end() {
-  drive_impulse += h_ * (law_.force - law_.damping.cwiseProduct(v_end_.tail(body_.joints())));
+  const VecX joints = v_end_.tail(body_.joints());
+  drive_impulse += h_ * (law_.force - law_.damping.cwiseProduct(joints));
+  friction_impulse += h_ * (friction_law_.force - friction_law_.damping.cwiseProduct(joints));
+  for (const auto& limit : constraints_) limit_impulse[limit->getLinkA()] += limit->getAppliedImpulse(0) - limit->getAppliedImpulse(1);
   body_.refresh();
   if (body_.base_dof() == 0) return;
   Eigen::Matrix<Real, 6, 1> momentum = (M_ * (v_start_ + v_end_ - v_free_) + h_ * tau_).head<6>() + h_ * weight_;

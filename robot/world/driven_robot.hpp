@@ -27,6 +27,8 @@ class DrivenRobot {
   const MatX& motions() const { return motions_; }
   /// d q_end / d tau over count substeps.
   MatX response(Real h, int count, bool drives) const;
+  /// [independent joints] after a step of length dt.
+  std::vector<JointHold> holds(Real dt) const;
 
   /// Configuration, velocity, commands and active sets as numbers, to the bit.
   void save(std::vector<Real>& numbers) const;
@@ -47,8 +49,8 @@ class DrivenRobot {
   /// After the configuration has changed: gives a free base the momentum that it has got (README.md), books the drives' impulse.
   void end();
 
-  /// [nj] N m s or N s: of the drives, since it was last set to zero.
-  VecX drive_impulse;
+  /// [nj] N m s or N s: of the drives, of dry friction and of limits, since they were last set to zero.
+  VecX drive_impulse, friction_impulse, limit_impulse;
 
  private:
   void add_limits();
@@ -69,8 +71,8 @@ class DrivenRobot {
   Vec3 gravity_ = Vec3::Zero();
   VecX tau_, q_, v_start_, v_free_, v_end_;
   Eigen::Matrix<Real, 6, 1> weight_ = Eigen::Matrix<Real, 6, 1>::Zero();
-  Vec3 origin_ = Vec3::Zero();  // of the base's frame at the start
-  DriveLaw law_;                // of the drives
+  Vec3 origin_ = Vec3::Zero();   // of the base's frame at the start
+  DriveLaw law_, friction_law_;  // law_: of the drives
   MatX M_;
   Eigen::LLT<MatX> K_;     // of the independent motions
   MatX impulse_response_;  // empty until asked for

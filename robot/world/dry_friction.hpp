@@ -16,6 +16,7 @@ class DryFriction {
   /// @param release  false: joints may only start to slip
   bool update(const VecX& v, bool release);
 
+  const VecX& friction() const { return friction_; }  ///< [nj] N m or N, most that each exerts
   /// [nj] -1, 0 or 1: the sign of the friction of joints that slip.
   const std::vector<int>& slipping() const { return slipping_; }
   void set_slipping(std::vector<int> slipping) { slipping_ = std::move(slipping); }

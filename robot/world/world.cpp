@@ -98,7 +98,8 @@ void World::step(Real dt, const std::vector<VecX>& tau, const std::function<void
     forces.push_back(tau.empty() || tau[i].size() == 0 ? VecX::Zero(dof(robot)) : tau[i]);
     if (forces.back().size() != dof(robot) || !forces.back().allFinite())
       throw InputError("robot " + model(robot).name + ": an external force needs one finite number for each degree of freedom");
-    impl_->at(robot).drive_impulse.setZero();
+    DrivenRobot& r = impl_->at(robot);
+    for (VecX* impulse : {&r.drive_impulse, &r.friction_impulse, &r.limit_impulse}) impulse->setZero();
   }
   impl_->physics.unsettled = 0;
   const int count = substeps(dt, impl_->params.substep);
@@ -168,6 +169,11 @@ MatX World::response(int robot, Real dt, bool drives) const {
 VecX World::drive_effort(int robot) const {
   const VecX& impulse = impl_->at(robot).drive_impulse;
   return impl_->last_dt > 0 ? VecX(impulse / impl_->last_dt) : VecX::Zero(impulse.size());
+}
+std::vector<JointHold> World::holds(int robot) const {
+  const DrivenRobot& r = impl_->at(robot);
+  return impl_->last_dt > 0 ? r.holds(impl_->last_dt)
+                            : std::vector<JointHold>(static_cast<std::size_t>(r.motions().cols() - r.body().base_dof()));
 }
 VecX World::effort_limit(int robot) const { return impl_->at(robot).drives().limits(); }
 std::vector<int> World::saturation(int robot) const { return impl_->at(robot).drives().saturation(); }

@@ -29,6 +29,14 @@ struct RobotState {
   VecX v;  ///< [dof] m/s, rad/s
 };
 
+/// What keeps an independent joint where it is, beside its drive and contacts: its dry friction, if it sticks, and its limit, if that has
+/// acted in the last step or the joint stands at it; of the joints that follow it too.
+struct JointHold {
+  Real effort = 0;           ///< [N m or N] that they exert, mean over the last step
+  Real least = 0, most = 0;  ///< [N m or N] between which that may change while the joint stands still; both 0: nothing holds it
+  bool stopped = false;      ///< a limit holds it, too
+};
+
 /// A touching point in the last substep.
 struct Contact {
   int robot_a = 0, link_a = 0, robot_b = 0, link_b = 0;
@@ -73,7 +81,7 @@ class World {
   /// @param before  called before each substep with the time [s] since the start at which it ends: it may command
   void step(Real dt, const std::vector<VecX>& tau = {}, const std::function<void(Real)>& before = {});
   Snapshot save() const;
-  /// What is reported of the last step (drive_effort, contacts, unsettled_substeps) is not kept.
+  /// What is reported of the last step (drive_effort, holds, contacts, unsettled_substeps) is not kept.
   void restore(const Snapshot& snapshot);
 
   Pose link_pose(int robot, int link) const;
@@ -98,6 +106,8 @@ class World {
   VecX drive_effort(int robot) const;
   /// [nj] N m or N: most that each drive exerts; infinite where neither the model nor its gains name a limit.
   VecX effort_limit(int robot) const;
+  /// [independent joints]
+  std::vector<JointHold> holds(int robot) const;
   /// [nj] -1, 0 or 1: the effort limit at which each drive stood in the last substep.
   std::vector<int> saturation(int robot) const;
   std::vector<Contact> contacts() const;

@@ -11,12 +11,13 @@ namespace tape {
 /// Kinetic term, with e = q - predicted:
 ///   1/2 e' inertia e / dt^2 + sum over k of phi_k(e_k),   phi_k' = drive_k e_k / dt^2, but not below least_k nor above most_k.
 /// inertia + diag(drive) is what a force held over the step meets: dt^2 S^-1 with the response S = dq/df of links and drives together
-/// (design, part 9). A drive that comes to its limit pushes on with that: its potential goes on linearly.
+/// (cosim/exchange/README.md). A drive that comes to its limit pushes on with that: its potential goes on linearly. Likewise friction that
+/// holds a joint, or a joint's limit.
 struct ArticulationStep {
   Eigen::VectorXd predicted;                          ///< [m] change of q over the step when nothing on the tape side exerts a force
   Eigen::MatrixXd inertia;                            ///< [m, m] symmetric positive definite
   std::vector<Eigen::MatrixXd> jacobian;              ///< [links][6, m] J_v, then J_w
-  Eigen::VectorXd drive = {}, least = {}, most = {};  ///< [m] or empty: none; least <= 0 <= most
+  Eigen::VectorXd drive = {}, least = {}, most = {};  ///< [m] or empty: none
 };
 
 /// What the tape side is told before a step about what somebody else simulates.

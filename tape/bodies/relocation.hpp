@@ -62,7 +62,7 @@ TAPE_HD void relocate_gradient(const Relocation<K>& r, const VecN<3 * K>& g, Vec
 /// J^T H J, and with `exact` the second-order term sum_j g_j d2x_j/dq2 of the rotations: the upper blocks, out[pair_slot(a, b)].
 /// x(w) = exp(skew w) arm, so that the term of one vertex is (g arm^T + arm g^T)/2 - (g.arm) I at w = 0.
 /// Without `exact` it is left out: for contact forces it is large and indefinite, and dropping it keeps the sum positive
-/// semidefinite (a trial measured 16 -> 5 Newton iterations a step; the bodies' inertia has its own in closed form).
+/// semidefinite (16 -> 5 Newton iterations a step where it was tried; the bodies' inertia has its own in closed form).
 template <int K>
 TAPE_HD void relocate_hessian(const Relocation<K>& r, const VecN<3 * K>& g, const MatN<3 * K, 3 * K>& H, bool exact, Mat3* out) {
   const int m = r.blocks;

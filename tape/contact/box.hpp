@@ -17,6 +17,9 @@ struct Box {
     return true;
   }
 };
+TAPE_HD inline bool meet(const Box& a, const Box& b) {
+  return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
+}
 TAPE_HD inline Box inflated(const Box& b, Real by) { return {b.low - Vec3::Constant(by), b.high + Vec3::Constant(by)}; }
 TAPE_HD inline Box joined(const Box& a, const Box& b) { return {a.low.cwiseMin(b.low), a.high.cwiseMax(b.high)}; }
 

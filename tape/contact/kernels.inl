@@ -107,10 +107,10 @@ struct Viewpoint {
     const int k = frame(v);
     return k == kWorld ? path_box(paths[v]) : path_box(frames[k], paths[v]);
   }
-  /// Whether the vertex cannot move, so that its box stays what it is.
+  /// Whether the vertex cannot move there, so that its box stays what it is.
   TAPE_HD bool still(int v) const {
     const int k = frame(v), carrier = s.vertex_carrier[v];
-    return carrier == kFixed || (k != kWorld && carrier >= 0 && carrier == s.vertex_carrier[s.lead[k]]);
+    return k == kWorld ? carrier == kFixed : carrier >= 0 && carrier == s.vertex_carrier[s.lead[k]];
   }
 };
 struct MakeTrust {
@@ -235,7 +235,7 @@ struct BoxTriangles {
   }
 };
 
-/// Objects that may touch another one, or themselves, and the primitives of these: all others need not be looked at.
+/// The box of each object, of all that it may touch from the world's view.
 struct BoxObjects {
   SurfaceView s;
   Sight sight;
@@ -248,35 +248,72 @@ struct BoxObjects {
     boxes[o] = box;
   }
 };
-struct FindCompany {
+/// For each object those that it may touch from the world's view: that follow another frame, or none, and whose boxes meet its own.
+struct FindPartners {
   SurfaceView s;
   Span<const int> first;
-  Span<const char> always;  ///< [objects] 1: touches itself, or is seen from a frame
   Span<const Box> boxes;
-  Span<int> company;  ///< [objects] 0 or 1
+  Span<int> partners;  ///< [objects objects] of object o from objects o on
+  Span<int> count;     ///< [objects]
   TAPE_HD bool fixed(int o) const { return s.vertex_carrier[first[o]] == kFixed; }
-  TAPE_HD bool near(int o, int p) const {
-    if (first[p] == first[p + 1] || (fixed(o) && fixed(p))) return false;
+  TAPE_HD bool may_touch(int o, int p) const {
+    if (o == p || first[p] == first[p + 1] || (fixed(o) && fixed(p))) return false;
     if (s.apart.size > 0 && s.apart[o * s.objects + p] != 0) return false;
-    return (boxes[o].low.array() <= boxes[p].high.array()).all() && (boxes[p].low.array() <= boxes[o].high.array()).all();
+    const int frame = s.vertex_frame[first[o]];
+    return frame == kWorld || frame != s.vertex_frame[first[p]];
   }
   TAPE_HD void operator()(int o) const {
-    company[o] = always[o];
-    for (int p = 0; p < s.objects && company[o] == 0 && first[o] < first[o + 1]; ++p)
-      if (p != o && near(o, p)) company[o] = 1;
+    int n = 0;
+    for (int p = 0; p < s.objects && first[o] < first[o + 1]; ++p)
+      if (may_touch(o, p) && meet(boxes[o], boxes[p])) partners[o * s.objects + n++] = p;
+    count[o] = n;
   }
 };
 enum class Part { vertex, edge, triangle };
-struct FlagCompany {
+TAPE_HD inline int first_vertex(const SurfaceView& s, Part part, int id) {
+  return part == Part::vertex ? id : part == Part::edge ? s.edges[id].v[0] : s.triangles[id].v[0];
+}
+/// Primitives of objects that are looked at from the world: those that have partners, follow a frame, or touch themselves.
+struct FlagLookedAt {
   SurfaceView s;
   Part part;
-  Span<const int> list, company;
-  Span<int> flag;  ///< [list + 1], the last stays 0
+  Span<const int> list, count;
+  Span<const char> has_frame, self;  ///< [objects]
+  Span<int> flag;                    ///< [list + 1], the last stays 0
   TAPE_HD void operator()(int k) const {
     flag[k] = 0;
     if (k == list.size) return;
-    const int id = list[k], v = part == Part::vertex ? id : part == Part::edge ? s.edges[id].v[0] : s.triangles[id].v[0];
-    flag[k] = company[s.vertices[v].object];
+    const int o = s.vertices[first_vertex(s, part, list[k])].object;
+    flag[k] = count[o] > 0 || has_frame[o] != 0 || self[o] != 0 ? 1 : 0;
+  }
+};
+/// Primitives that may touch something from the world's view, and with `awake` what is seen from its frame and does not sleep.
+struct FlagNear {
+  SurfaceView s;
+  Sight sight;
+  Part part;
+  bool awake;
+  Span<const int> list, partners, count;
+  Span<const Box> boxes;  ///< [objects]
+  Span<const char> self;  ///< [objects] 1: touches itself, from the world's view
+  Span<int> flag;         ///< [list + 1], the last stays 0
+  TAPE_HD void operator()(int k) const { flag[k] = k < list.size && near(list[k]) ? 1 : 0; }
+
+ private:
+  TAPE_HD bool sleeps(int id) const {
+    return part == Part::vertex ? s.member[id] != 0 : part == Part::edge ? s.edge_sleeps(id) : s.triangle_sleeps(id);
+  }
+  TAPE_HD Box box(int id) const {
+    return part == Part::vertex ? sight.box(s, id) : part == Part::edge ? sight.box(s, s.edges[id]) : sight.box(s, s.triangles[id]);
+  }
+  TAPE_HD bool near(int id) const {
+    const int v = first_vertex(s, part, id), o = s.vertices[v].object;
+    if (self[o] != 0 || (awake && s.vertex_frame[v] != kWorld && !sleeps(id))) return true;
+    if (count[o] == 0) return false;
+    const Box box = this->box(id);
+    for (int k = 0; k < count[o]; ++k)
+      if (meet(box, boxes[partners[o * s.objects + k]])) return true;
+    return false;
   }
 };
 /// What is flagged, in its order.

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <vector>
 
 #include "tape/contact/groups.hpp"
@@ -70,7 +71,7 @@ class ContactSearch {
   void look(const PathView& paths, Real margin);
   void find_company();
   /// What looks for pairs.
-  const detail::Primitives& in_view() const { return surface_.alone ? surface_.followers : in_company_.everything; }
+  const detail::Primitives& in_view() const { return surface_.alone ? surface_.followers : in_company_.asking; }
   template <class F>
   void query(const F& f);
   void find_frames(const PathView& paths);
@@ -82,14 +83,16 @@ class ContactSearch {
   SurfaceMesh mesh_;
   detail::SurfaceBuffers surface_;
   ObjectGroups groups_;
-  Buffer<Pose> frame_origin_;  ///< [frames] at the rebuild
-  Buffer<FramePath> frames_;   ///< [frames]
-  Seen own_, world_;           ///< what follows a frame from there; all from the world, where that matters
-  Buffer<Box> object_boxes_;   ///< [objects]
-  Buffer<int> company_;        ///< [objects] 1: it may touch another one
+  Buffer<Pose> frame_origin_;     ///< [frames] at the rebuild
+  Buffer<FramePath> frames_;      ///< [frames]
+  Seen own_, world_;              ///< what follows a frame from there; all from the world, where that matters
+  Buffer<Box> object_boxes_;      ///< [objects]
+  Buffer<int> partners_;          ///< [objects objects] of each object, that it may touch from the world's view
+  Buffer<int> partner_count_;     ///< [objects]
+  detail::Primitives looked_at_;  ///< of objects with partners or a frame
   struct {
-    detail::Primitives everything, rest, outside, followers;
-  } in_company_;  ///< of what is seen from the world
+    detail::Primitives asking, rest, outside, followers;
+  } in_company_;  ///< what may touch one of the partners; asking: and all that is awake and seen from a frame
   Planted own_trees_, asleep_trees_, rest_trees_, outside_trees_, follower_trees_;
   Buffer<Lanes> boxes_;
   detail::Hits vertex_hits_, sleeper_hits_, edge_hits_;

@@ -13,13 +13,14 @@ inline ContactSearch::ContactSearch(const SurfaceMesh& mesh, Real dhat, Real gua
 
 inline void ContactSearch::set_carriage(const SurfaceCarriage& carriage) {
   mesh_.owner = carriage.owner, mesh_.follows = carriage.follows;
+  const std::vector<int> slept = surface_.asleep.vertices.download();
   surface_.set_carriage(mesh_, carriage.clusters);
   groups_ = ObjectGroups(mesh_);
   component_.upload(groups_.component_of_object);
   block_object_.upload(groups_.object_of_block);
   forget();
-  const int left = surface_.asleep.size(), planted = asleep_trees_.size;
-  if (left <= planted && 2 * left > planted) return;  // what has woken since stays in the trees and is passed over
+  const bool only_woken = std::ranges::includes(slept, surface_.asleep.vertices.download());
+  if (only_woken && 2 * surface_.asleep.size() > asleep_trees_.size) return;  // what has woken stays in the trees and is passed over
   resize(own_);
   const Buffer<Vec3> home(carriage.home);
   const Span<const int> vertices = surface_.asleep.vertices.span();
@@ -109,34 +110,49 @@ inline void ContactSearch::look(const PathView& paths, Real margin) {
   parallel_for(surface_.everything.vertices.size(),
                detail::MakeTrust{{s, paths, {}}, margin, surface_.everything.vertices.span(), world_.trust.span()});
   find_company();
-  make_shapes(in_company_.everything, world_);
+  make_shapes(looked_at_, world_);
   plant(in_company_.rest, world_, false, rest_trees_);
   plant(in_company_.outside, world_, false, outside_trees_);
   plant(in_company_.followers, world_, false, follower_trees_);
 }
 
-/// Lists what the objects have that may touch another one.
+/// Lists what may touch another object from the world's view.
 inline void ContactSearch::find_company() {
   const detail::SurfaceView s = surface_.view();
-  object_boxes_.resize(s.objects), company_.resize(s.objects);
+  const detail::Sight sight = world_.view();
+  object_boxes_.resize(s.objects), partner_count_.resize(s.objects), partners_.resize(s.objects * s.objects);
   const Span<const int> first = surface_.first_vertex.span();
-  parallel_for(s.objects, detail::BoxObjects{s, world_.view(), first, object_boxes_.span()});
-  parallel_for(s.objects, detail::FindCompany{s, first, surface_.always.span(), object_boxes_.span(), company_.span()});
-  const auto list = [&](detail::Part part, const Buffer<int>& all, Buffer<int>& out) {
+  parallel_for(s.objects, detail::BoxObjects{s, sight, first, object_boxes_.span()});
+  parallel_for(s.objects, detail::FindPartners{s, first, object_boxes_.span(), partners_.span(), partner_count_.span()});
+  const auto keep = [&](const Buffer<int>& all, Buffer<int>& out, const auto& kernel) {
     kept_.resize(all.size() + 1);
-    parallel_for(kept_.size(), detail::FlagCompany{s, part, all.span(), company_.span(), kept_.span()});
+    parallel_for(kept_.size(), kernel(all.span(), kept_.span()));
     out.resize(exclusive_scan(kept_.span()));
     parallel_for(all.size(), detail::KeepFlagged<int>{all.span(), kept_.span(), out.span()});
   };
-  const auto lists = [&](const detail::Primitives& all, detail::Primitives& out) {
+  const auto look_at = [&](detail::Part part, const Buffer<int>& all, Buffer<int>& out) {
+    keep(all, out, [&](Span<const int> list, Span<int> flag) {
+      return detail::FlagLookedAt{s, part, list, partner_count_.span(), surface_.has_frame.span(), surface_.touches_itself.span(), flag};
+    });
+  };
+  look_at(detail::Part::edge, surface_.everything.edges, looked_at_.edges);
+  look_at(detail::Part::triangle, surface_.everything.triangles, looked_at_.triangles);
+  const auto near = [&](const detail::Primitives& all, bool awake, detail::Primitives& out) {
+    const auto list = [&](detail::Part part, const Buffer<int>& from, Buffer<int>& to) {
+      keep(from, to, [&](Span<const int> ids, Span<int> flag) {
+        return detail::FlagNear{
+            s,   sight, part, awake, ids, partners_.span(), partner_count_.span(), object_boxes_.span(), surface_.touches_itself.span(),
+            flag};
+      });
+    };
     list(detail::Part::vertex, all.vertices, out.vertices);
     list(detail::Part::edge, all.edges, out.edges);
     list(detail::Part::triangle, all.triangles, out.triangles);
   };
-  lists(surface_.everything, in_company_.everything);
-  lists(surface_.rest, in_company_.rest);
-  lists(surface_.outside, in_company_.outside);
-  lists(surface_.all_followers, in_company_.followers);
+  near(surface_.everything, true, in_company_.asking);
+  near(surface_.rest, false, in_company_.rest);
+  near(surface_.outside, false, in_company_.outside);
+  near(surface_.all_followers, false, in_company_.followers);
 }
 
 /// After a look: calls f with what asks for pairs of vertices, of what sleeps and of edges, and how many each finds.

@@ -123,10 +123,15 @@ struct SurfaceBuffers {
     std::vector<char> sleeps;
     for (int carrier : carriers.vertex) sleeps.push_back(clusters.contains(carrier) ? 1 : 0);
     member.upload(sleeps);
-    std::vector<char> together(mesh.objects.size(), 0);
-    for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-      if (carriers.vertex[v] == kFree || frames.vertex[v] != kWorld) together[static_cast<std::size_t>(mesh.vertices[v].object)] = 1;
-    always.upload(together);
+    std::vector<char> framed(mesh.objects.size(), 0), free(mesh.objects.size(), 0);
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+      const auto object = static_cast<std::size_t>(mesh.vertices[v].object);
+      if (frames.vertex[v] != kWorld)
+        framed[object] = 1;
+      else if (carriers.vertex[v] == kFree)
+        free[object] = 1;
+    }
+    has_frame.upload(framed), touches_itself.upload(free);
     const auto follows = [&](int v) { return frames.vertex[static_cast<std::size_t>(v)] != kWorld; };
     const auto is_asleep = [&](std::span<const int> v) {
       return sleeps[static_cast<std::size_t>(v[0])] != 0 && carriers.common(v) != kFree;
@@ -174,7 +179,8 @@ struct SurfaceBuffers {
   Buffer<Home> home;                     ///< [frames]
   Buffer<char> member;                   ///< [nv]
   Buffer<int> first_vertex;              ///< [objects + 1] vertices of an object are consecutive
-  Buffer<char> always;                   ///< [objects] 1: touches itself, or follows a frame
+  Buffer<char> has_frame;                ///< [objects] 1: is seen from one
+  Buffer<char> touches_itself;           ///< [objects] 1: and is seen from the world alone
   Buffer<char> apart;                    ///< [objects objects], or empty
   Buffer<char> shuns;                    ///< [objects], or empty
   Primitives followers, asleep;          ///< of frames, awake and asleep

@@ -27,7 +27,7 @@ struct Pose {
 };
 TAPE_HD inline Vec3 apply(const Pose& X_WB, const Vec3& p_B) { return X_WB.rotation * p_B + X_WB.position; }
 
-/// `exact` keeps negative curvature; `projected` is positive semidefinite in closed form (design: "Numerics").
+/// `exact` keeps negative curvature; `projected` is positive semidefinite in closed form (effects/README.md).
 enum class HessianMode { exact, projected };
 
 /// What a kernel sees of an array: pointer and length, memory of the side that runs the kernel.

@@ -93,6 +93,7 @@ class PairMover {
       if (it == of_vertex_.end()) continue;
       Real most = 0;
       for (const Memory* m : it->second) {
+        if (!(engagement(*m) > 0)) continue;
         most = std::max(most, engagement(*m));
         reach = std::max(reach, before(*m).distance());
         if (const int t = cut_.new_triangle(m->triangle); t >= 0) by_triangle[t].push_back({m, parent.weight[k]});
@@ -118,7 +119,9 @@ class PairMover {
     Memory out = *heaviest->first;
     out.vertex = vertex, out.triangle = triangle;
     if constexpr (std::is_same_v<Memory, Cohesion::Memory>) {
-      if (engaged < 1) out.beta = engaged;
+      Real beta = 0, sum = 0;
+      for (const auto& [m, weight] : holds) beta += weight * m->beta, sum += weight;
+      out.beta = std::min(engaged, beta / sum);
       out.slip = after(vertex, triangle).basis().transpose() * before(*heaviest->first).basis().transpose().inverse() * out.slip;
     } else {
       Mat3 strain = Mat3::Zero();

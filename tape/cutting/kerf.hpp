@@ -25,7 +25,7 @@ struct KerfParams {
   Real edge_reach = 0.25;
   template <class F>
   void fields(F&& f) {
-    f("min_angle", min_angle, "deg", Range::closed(1, 25), "smallest angle of a new triangle");
+    f("min_angle_deg", min_angle, "deg", Range::closed(1, 25), "smallest angle of a new triangle");
     f("min_width", min_width, "cells", Range::closed(1e-3, 0.25), "shortest edge, and narrowest strip that may be left over");
     f("tolerance", tolerance, "cells", Range::closed(1e-3, 0.25), "how closely the blade is followed");
     f("edge_reach", edge_reach, "cells", Range::closed(0.01, 1), "a line that ends nearer to an edge of the strip goes on through it");

@@ -136,6 +136,9 @@ class Projector {
       const Stretch& s = stretches[i];
       for (std::size_t j = 0; j < i; ++j)
         if (differ(s, stretches[j], alike)) return void(out_.refusal = "the strip lies under the blade more than once");
+      const Real gap = std::max(s.from - reached, Real{0});
+      if (i > 0 && (at(s, std::clamp(reached, s.from, s.to)) - out_.line.back()).norm() > gap / params_.facing + cell_size(mesh_))
+        return void(out_.refusal = "the strip lies beside itself under the blade");
       for (const Vec2& p : {at(s, std::clamp(reached, s.from, s.to)), s.end})
         if (out_.line.empty() || (p - out_.line.back()).norm() > alike) out_.line.push_back(p);
       reached = std::max(reached, s.to);

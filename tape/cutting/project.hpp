@@ -27,7 +27,7 @@ struct Projection {
 /// Where a blade would cut a strip. The triangles that are connected to `targets` within reach of the blade span a plane (mean normal,
 /// weighted by area); blade and triangles are projected on it, and each stretch of the blade over a triangle goes to the rest plane by
 /// that triangle's corners. Gaps are bridged straight; past an edge of the strip the line goes on straight by at most `overshoot`.
-/// Refused: a blade or tape that stands edge-on to the plane, tape that lies there more than once.
+/// Refused: a blade or tape that stands edge-on to the plane, tape that lies there more than once, one above or one beside the other.
 /// @param x        [vertices] m, where the strip is
 /// @param blade    [k] m, corners of a polyline in the world
 /// @param targets  triangles of the strip, such as those under pressure

@@ -14,7 +14,7 @@ struct TrianglePlane;
 /// Up to the largest opening that was ever reached at the end of a step the traction runs back along its secant: what was torn stays
 /// torn, and the work of separation does not depend on dt. Beyond it softens within the step.
 /// With c_a = e_a.r along the triangle's edges (TrianglePlane), and their metric G when the step started, h^2 = |r|^2 - c^T G^-1 c and
-/// |u|^2 = (c - c*)^T G^-1 (c - c*), c* when they met.  Source: design, part 5.
+/// |u|^2 = (c - c*)^T G^-1 (c - c*), c* when they met. README.md says why.
 struct CohesiveZone {
   static constexpr std::string_view name = "cohesive_zone";
   struct Params {
@@ -94,6 +94,8 @@ struct CohesiveZone {
   TAPE_HD inline VecN<18> gradient(const StateView& s, int i) const;
   /// `projected` takes the secant's stiffness and drops the curvature of height and slip: what stays are squares.
   TAPE_HD inline MatN<18, 18> hessian(const StateView& s, int i, HessianMode mode) const;
+  template <class F>
+  TAPE_HD inline bool squares(const StateView& s, int i, const F& add) const;
 
   /// A sample sticks where it is within reach and the faces that it and the triangle turn to each other adhere.
   TAPE_HD inline bool begin(const SamplePair& pair, const StateView& s, Memory& out) const;

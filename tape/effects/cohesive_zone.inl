@@ -79,6 +79,19 @@ TAPE_HD MatN<18, 18> CohesiveZone::hessian(const StateView& s, int i, HessianMod
   }
   return h;
 }
+template <class F>
+TAPE_HD bool CohesiveZone::squares(const StateView& s, int i, const F& add) const {
+  const Element& e = elements[i];
+  const auto at = plane(e, s.x);
+  const Opening o(e, at);
+  const Real stiffness = 2 * e.area * e.zone.slope(o.delta());
+  const MatN<18, 2> J = at.slope();
+  const Mat2& m = e.inverse_metric;  // J m J^T by columns: m = a a^T / m_00 + (det m / m_00) b b^T, a its first column, b = (0, 1)
+  add(stiffness * e.shear / m(0, 0), VecN<18>(J * m.col(0)));
+  add(stiffness * e.shear * m.determinant() / m(0, 0), VecN<18>(J.col(1)));
+  if (o.open > 0) add(stiffness, height_gradient(at, o));
+  return true;
+}
 TAPE_HD bool CohesiveZone::begin(const SamplePair& pair, const StateView& s, Memory& out) const {
   const Adhesion& a = s.adhesion[pair.interface];
   if (a.law != of_law) return false;

@@ -17,7 +17,7 @@ struct ClusterParams {
   Real gate_distance = 5;
   template <class F>
   void fields(F&& f) {
-    f("collar", collar, "1", Range::closed(1, 1000), "N, edges of the mesh between the cluster and the free tape");
+    f("collar", collar, "1", Range::closed(1, 1000), "N, edges of the mesh between the cluster and the free tape; at 1 it never moves");
     f("gate", gate, "", Range::any(), "motion of a collar vertex that counts: all of it, or along the roll's radius");
     f("gate_distance", gate_distance, "1", Range::above(0, 1e4),
       "delta, motion at which a collar vertex may become free, in units of dhat");

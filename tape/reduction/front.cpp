@@ -9,12 +9,15 @@
 namespace tape {
 namespace {
 /// Calls f(v) for the vertices of the strip, counted from its first, that a bond of the wound roll holds: its sides are the vertex and the
-/// triangle, and where a side is free tape that lies on the roll again it is none.
+/// triangle, and where a side is another thing, or free tape that lies on the roll again, it is none.
 template <class F>
 void for_each_held(const FrontView& view, const Cluster& cluster, const Bonds::Memory& bond, const F& f) {
   const auto in_strip = [&](int v) { return v >= view.strip.first_vertex && v < view.strip.first_vertex + view.strip.vertices; };
   const auto free = [&](int v) { return in_strip(v) && (*cluster.distance)[static_cast<std::size_t>(v - view.strip.first_vertex)] == 0; };
+  const auto in_core = [&](int v) { return v >= view.core.first_vertex && v < view.core.first_vertex + view.core.vertices; };
   const Index3& triangle = view.assembly.triangles[static_cast<std::size_t>(bond.triangle)];
+  const auto of_roll = [&](int v) { return in_strip(v) || in_core(v); };
+  if (!of_roll(bond.vertex) || !std::ranges::all_of(triangle, of_roll)) return;
   const bool free_triangle = std::ranges::any_of(triangle, free);
   if (!free_triangle && in_strip(bond.vertex)) f(bond.vertex - view.strip.first_vertex);
   if (free(bond.vertex)) return;

@@ -8,10 +8,12 @@ namespace tape {
 struct FrontView {
   const Assembly& assembly;
   const StripPart& strip;
+  const BodyPart& core;
   const std::vector<Vec3>& x;  ///< [nv] m
   Pose cluster, hub;           ///< X_WB; the hub's axis is its z
 };
-/// Marks what bonds of the wound roll have let go: those of `before` that `after` lacks, between tape of which no side is free.
+/// Marks what bonds of the wound roll, of the strip with itself or with its core, have let go: those of `before` that `after` lacks,
+/// between tape of which no side is free.
 void mark_released(const FrontView& view, const std::vector<Bonds::Memory>& before, const std::vector<Bonds::Memory>& after,
                    Cluster& cluster);
 /// Collar vertices that become free: by the gate, and where bonds hold the roll together only if they were released and no bond holds them.

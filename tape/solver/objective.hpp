@@ -45,6 +45,7 @@ struct TermMemory {};
 template <Remembers T>
 struct TermMemory<T> {
   Buffer<typename T::Memory> memory;
+  Buffer<char> asleep;  // [samples] 1: what it sticks to is remembered elsewhere; empty: of none
 };
 
 /// One effect as the solver holds it.
@@ -80,6 +81,8 @@ class Objective {
   void set_candidates(Span<const ContactPair> candidates);
   /// Fixes what lags for a step, at s.x == s.x_start.
   void begin_step(const StateView& s);
+  /// What clusters remember, so that `remember` takes none of its samples for one that sticks to nothing.
+  void set_asleep(const std::vector<const EffectMemory*>& memories);
   /// Makes the elements of what is remembered, at s.x == s.x_start.
   void recall(const EffectMemory& memory, const StateView& s, const detail::SurfaceView& surface);
   /// What is remembered of a step that ended at s.
@@ -92,7 +95,8 @@ class Objective {
   Real contact_energy(const StateView& s, const std::vector<VertexTriangle>& pairs, const detail::SurfaceView& surface);
   EnergySum energy(const StateView& s);
   /// Gradient and matrix at s.
-  void linearize(const StateView& s, HessianMode mode);
+  /// @param fixed, contact  of the effects whose pattern is that of the strips, and of those between things
+  void linearize(const StateView& s, HessianMode fixed, HessianMode contact);
   Span<const Vec3> gradient() const { return gradient_.span(); }
   const BlockMatrix& matrix() const { return matrix_; }
   /// Calls f(std::type_identity<effect>, forces) with what each effect exerts at s on the first `blocks` of unknowns [N; N m for

@@ -46,9 +46,11 @@ struct PairCandidates {
 /// Samples that may be remembered: candidate k is sample k with the nearest triangle that it sticks to, the first of equally near ones.
 struct SampleCandidates {
   detail::SampleQuery query;
+  Span<const char> asleep;  ///< empty: none is
   int size;
   template <class T>
   TAPE_HD bool begin(int k, const T& term, const StateView& s, Span<const typename T::Memory> before, typename T::Memory& out) const {
+    if (asleep.size > 0 && asleep[k] != 0) return false;
     const int known = detail::first_from(before, pair_key(k, 0));
     if (known < before.size && before[known].sample == k) return false;
     Real nearest = std::numeric_limits<Real>::infinity();
@@ -62,9 +64,9 @@ struct SampleCandidates {
 };
 
 template <class T>
-auto candidates_of(const T& term, Span<const ContactPair> pairs, const detail::SampleQuery& samples) {
+auto candidates_of(const Term<T>& term, Span<const ContactPair> pairs, const detail::SampleQuery& samples) {
   if constexpr (Samples<T>) {
-    return SampleCandidates{samples, term.count()};
+    return SampleCandidates{samples, term.asleep.span(), term.view.count()};
   } else {
     return PairCandidates{pairs, pairs.size};
   }
@@ -117,6 +119,20 @@ struct Gather {
 };
 }  // namespace objective
 
+inline void Objective::set_asleep(const std::vector<const EffectMemory*>& memories) {
+  for_each([&]<class T>(std::string_view, Term<T>& term) {
+    if constexpr (Samples<T>) {
+      std::vector<char> asleep;
+      for (const EffectMemory* memory : memories)
+        for (const typename T::Memory& m : std::get<MemoryOf<T>>(*memory).pairs) {
+          asleep.resize(static_cast<std::size_t>(term.view.count()), 0);
+          asleep[static_cast<std::size_t>(m.sample)] = 1;
+        }
+      term.asleep.upload(asleep);
+    }
+  });
+}
+
 inline void Objective::recall(const EffectMemory& memory, const StateView& s, const detail::SurfaceView& surface) {
   for_each([&]<class T>(std::string_view, Term<T>& term) {
     if constexpr (Remembers<T>) {
@@ -135,7 +151,7 @@ inline EffectMemory Objective::remember(const StateView& s, const detail::Sample
     if constexpr (Remembers<T>) {
       using Memory = typename T::Memory;
       const Stopwatch watch(term.ms);
-      const auto candidates = objective::candidates_of(term.view, candidates_, samples);
+      const auto candidates = objective::candidates_of(term, candidates_, samples);
       const int all = term.memory.size() + candidates.size;
       Buffer<Memory> after;
       Buffer<std::uint64_t> key;

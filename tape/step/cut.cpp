@@ -34,8 +34,14 @@ StripMesh mesh_of(const World& world, const StripPart& part) {
   return mesh;
 }
 
-/// [m] at which a film begins to feel itself.
-Real contact_distance(const Scene& scene, int film) { return 2 * scene.films[static_cast<std::size_t>(film)].xi + scene.dhat(); }
+/// The kerf in a strip. No part of what is left may feel another, nor a cell its neighbours.
+Kerf kerf_in(const World& world, int film) {
+  constexpr Real kMore = 1.05;  // of the distance at which a film begins to feel itself
+  const Scene& scene = world.setup.scene;
+  Kerf out = world.setup.cutting.kerf;
+  out.clearance = std::max(out.clearance, kMore * (2 * scene.films[static_cast<std::size_t>(film)].xi + scene.dhat()));
+  return out;
+}
 
 /// Energy of motion [J] of the strips.
 Real kinetic(const World& world, const State& state) {
@@ -63,12 +69,16 @@ class Surgery {
     const CuttingParams& params = world_.setup.cutting;
     const auto first = state_.x.begin() + part_.first_vertex;
     const std::vector<Vec3> x(first, first + part_.vertices);
-    const Projection line = project_blade(mesh_, x, report_.where, targets, params.kerf.width, params.project);
-    if (!line) return refuse(line.refusal);
-    cut_ = cut_kerf(mesh_, line.line, kerf(), params.mesh, targets[0]);
-    if (!cut_) return refuse(cut_.refusal);
-    if (touches_cluster()) return refuse("the blade is on tape that is wound");
+    const auto project = [&](const std::vector<int>& on) {
+      return project_blade(mesh_, x, report_.where, on, params.kerf.width, params.project);
+    };
     try {
+      Projection line = project(targets);
+      if (!line) line = project({targets[0]});  // of several strands under the blade that which it presses most
+      if (!line) return refuse(line.refusal);
+      cut_ = cut_kerf(mesh_, line.line, kerf_in(world_, part_.film), params.mesh, targets[0]);
+      if (!cut_) return refuse(cut_.refusal);
+      if (touches_cluster()) return refuse("the blade is on tape that is wound");
       move_on(x, world, state);
       check_start(vertex_positions(world, state), world.surface, world.setup.scene.dhat(), pairs_out_of_contact(state.memory));
     } catch (const InputError& e) {
@@ -87,13 +97,6 @@ class Surgery {
   }
   const Film& film() const { return world_.setup.scene.films[static_cast<std::size_t>(part_.film)]; }
   Real per_area() const { return film().thickness * film().density; }
-  /// No part of what is left may feel another, nor a cell its neighbours.
-  Kerf kerf() const {
-    constexpr Real kMore = 1.05;
-    Kerf out = world_.setup.cutting.kerf;
-    out.clearance = std::max(out.clearance, kMore * contact_distance(world_.setup.scene, part_.film));
-    return out;
-  }
   bool touches_cluster() const {
     const std::vector<TapePart> parts = tape_parts(world_, state_);
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
@@ -114,6 +117,9 @@ class Surgery {
     state.remnants[strip_] = std::make_shared<const StripMesh>(cut_.mesh);
     keep_grips(state);
     world = world_.with(state.remnants);
+    std::size_t springs = 0;
+    for (const Assembly::GripPart& grip : world.assembly.grips) springs += grip.vertices.size();
+    if (springs != state.grip_base.size()) throw InputError("a new vertex would stand where a gripped one was");
     const CutInWorld in_world{.cut = cut_,
                               .old_mesh = mesh_,
                               .first_vertex = part_.first_vertex,
@@ -198,9 +204,10 @@ void require_blades(const World& world) {
   for (const Blade& blade : scene.blades) sharp_vertices(world, blade);
   if (scene.blades.empty()) return;
   for (const Strip& strip : scene.strips)
-    if (const Real contact = contact_distance(scene, strip.film); !(world.setup.cutting.kerf.width > contact))
-      throw InputError("cutting.width = " + to_text(world.setup.cutting.kerf.width) + ": the sides of a cut in strip '" + strip.name +
-                       "' would touch (allowed: above 2 xi + dhat = " + to_text(contact) + " m)");
+    if (const Kerf kerf = kerf_in(world, strip.film); !(kerf.width > kerf.clearance))
+      throw InputError("cutting.width = " + to_text(kerf.width) + ": the sides of a cut in strip '" + strip.name +
+                       "' would touch (allowed: above " + to_text(kerf.clearance) +
+                       " m, which is cutting.clearance or 1.05 (2 xi + dhat))");
 }
 
 BladeWatch::BladeWatch(const World& world) : world_(world), sharp_(world.assembly.x.size(), 0) {

@@ -168,8 +168,9 @@ bool advance_fronts(const World& world, const Carriage& carriage, const State& b
   for (std::size_t k = 0; k < after.clusters.size(); ++k) {
     const ClusterPlace at = place_of(world, k);
     Cluster& cluster = after.clusters[k];
-    const FrontView view{world.assembly, at.strip, after.x, after.bodies[at.body].pose,
-                         after.bodies[static_cast<std::size_t>(at.roll.winding->hub)].pose};
+    if (carriage.mass[static_cast<std::size_t>(at.part.centre)] == 0) continue;  // without members
+    const auto hub = static_cast<std::size_t>(at.roll.winding->hub);
+    const FrontView view{world.assembly, at.strip, world.assembly.bodies[hub], after.x, after.bodies[at.body].pose, after.bodies[hub].pose};
     const bool bonded = world.setup.scene.adhesion(at.roll.material, at.roll.material).law == AdhesionLaw::bond;
     const std::vector<Bonds::Memory>& bonds = std::get<MemoryOf<Bonds>>(after.memory).pairs;
     if (bonded) mark_released(view, std::get<MemoryOf<Bonds>>(before.memory).pairs, bonds, cluster);

@@ -141,16 +141,6 @@ bool sound(const StripMesh& mesh) {
          std::ranges::all_of(mesh.triangles, [&](const Index3& t) { return t.minCoeff() >= 0 && t.maxCoeff() < n; });
 }
 
-/// Of what a state must fit: vertices, triangles, rest shape and owners, and how triangles are cut into samples.
-std::string world_hash(const World& world) {
-  State digest;
-  for (const Index3& t : world.assembly.triangles) digest.x.push_back(t.cast<Real>());
-  for (const Vec2& r : world.assembly.rest) digest.x.push_back({r.x(), r.y(), 0});
-  for (const VertexOwner& o : world.assembly.owner) digest.x.push_back({static_cast<Real>(o.block), static_cast<Real>(o.body), 0});
-  if (world.is_on(CohesiveZone::name)) digest.step = params<CohesiveZone>(world.setup.effects).samples;
-  return digest.hash();
-}
-
 bool exists(const World& world, const VertexTriangle& pair) {
   return pair.vertex < std::ssize(world.surface.vertices) && pair.triangle < std::ssize(world.surface.triangles);
 }
@@ -225,6 +215,20 @@ Hdf5Handle open_snapshot(const std::string& file) {
 std::string as_text(const std::vector<char>& c) { return {c.begin(), c.end()}; }
 }  // namespace
 
+std::string world_hash(const World& world) {
+  State digest;
+  for (const Index3& t : world.assembly.triangles) digest.x.push_back(t.cast<Real>());
+  for (const Vec2& r : world.assembly.rest) digest.x.push_back({r.x(), r.y(), 0});
+  digest.x.insert(digest.x.end(), world.assembly.local.begin(), world.assembly.local.end());
+  for (const VertexOwner& o : world.assembly.owner) digest.x.push_back({static_cast<Real>(o.block), static_cast<Real>(o.body), 0});
+  if (!world.graphs.empty()) {  // clusters have their members' mass
+    digest.x.push_back({static_cast<Real>(world.setup.scene.cluster.collar), 0, 0});
+    for (int v = 0; v < world.assembly.strip_vertices; ++v) digest.x.push_back({world.assembly.mass[static_cast<std::size_t>(v)], 0, 0});
+  }
+  if (world.is_on(CohesiveZone::name)) digest.step = params<CohesiveZone>(world.setup.effects).samples;
+  return digest.hash();
+}
+
 void save_snapshot(const std::string& file, const World& world, const State& state, const std::string& settings) {
   silence_hdf5();
   State copy = state;
@@ -264,7 +268,8 @@ State load_snapshot(const std::string& file, const World& whole) {
     for (const auto& remnant : remnants)
       if (remnant && !sound(*remnant)) refuse("its strips are no meshes");
     const World world = whole.with(remnants);
-    if (as_text(read_array<char>(h5, kWorld, H5T_NATIVE_CHAR)) != world_hash(world)) refuse("its strips and bodies differ");
+    if (as_text(read_array<char>(h5, kWorld, H5T_NATIVE_CHAR)) != world_hash(world))
+      refuse("its strips or bodies differ, or the collar of its rolls");
     state = of_size(world);
     visit_state(state, Read{read_flat(kReals, kIntegers)});
     if (as_text(read_array<char>(h5, kHash, H5T_NATIVE_CHAR)) != state.hash()) refuse("its contents do not match their hash");

@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <numeric>
@@ -188,6 +189,9 @@ class SideStepper final : public Stepper {
     if (search_) search_->set_carriage(surface_carriage(world_, state, carriage_));
     for (Buffer<Vec3>* blocks : {&direction_, &right_, &points_}) blocks->resize(carriage_.blocks);
     objective_->set_carriage(carriage_.blocks, world_.assembly.strip_vertices, view(now_));
+    std::vector<const EffectMemory*> asleep;
+    for (const Cluster& cluster : state.clusters) asleep.push_back(cluster.asleep.get());
+    objective_->set_asleep(asleep);
   }
   /// Which members a state's clusters have.
   using Fronts = std::vector<std::shared_ptr<const std::vector<int>>>;
@@ -331,6 +335,7 @@ class SideStepper final : public Stepper {
 
   /// Lets clusters lose members at the end of a step. @return [J] stored in what wakes
   Real move_fronts(const State& before, State& after) {
+    const Real searched = search_ms_;
     const Stopwatch watch(front_ms_);
     if (!advance_fronts(world_, carriage_, before, after)) return 0;
     const Real known = stored_energy() + std::exchange(regained_, 0);
@@ -338,6 +343,7 @@ class SideStepper final : public Stepper {
     prescribe(Drive::at(world_, after, 0));
     take_up(after);
     recall(after.memory);
+    front_ms_ -= search_ms_ - searched;
     return stored_energy() - known;
   }
   Real stored_energy() {
@@ -445,6 +451,7 @@ class SideStepper final : public Stepper {
     };
     overshot_ = false;
     setting_out_ = articulations_.any();
+    tried_ = 0;
     for (int k = 0; k < params.max_newton; ++k) {
       ++report.newton;
       if (!find_direction(report)) return false;
@@ -516,13 +523,17 @@ class SideStepper final : public Stepper {
            moved * rate / (1 - rate) <= world_.setup.newton.velocity_tol * dt_;
   }
 
-  /// direction_ = -H^-1 g, right_ = -g.
+  /// direction_ = -H^-1 g, right_ = -g. The Hessian as it is, then with contact, friction and adhesion projected, then all of it: the first
+  /// that is positive definite; where the last direction needed more than the first, from one less on.
   bool find_direction(StepReport& report) {
-    mode_ = setting_out_ ? HessianMode::projected : world_.setup.newton.hessian;
-    for (;;) {
+    constexpr HessianMode kExact = HessianMode::exact, kProjected = HessianMode::projected;
+    constexpr std::array<std::pair<HessianMode, HessianMode>, 3> kTries{{{kExact, kExact}, {kExact, kProjected}, {kProjected, kProjected}}};
+    const bool all_projected = setting_out_ || world_.setup.newton.hessian == kProjected;
+    for (std::size_t k = all_projected ? 2 : tried_ > 0 ? tried_ - 1 : 0;; ++k) {
+      mode_ = kTries[k].second;
       {
         const Stopwatch watch(assembly_ms_);
-        objective_->linearize(view(now_), mode_);
+        objective_->linearize(view(now_), kTries[k].first, kTries[k].second);
         parallel_for(right_.size(), stepping::Negate{objective_->gradient(), right_.span()});
       }
       const Stopwatch watch(linear_ms_);
@@ -532,11 +543,11 @@ class SideStepper final : public Stepper {
       report.linear_iterations += solved.iterations;
       if (!solved.negative_curvature) {
         report.linear_failures += solved.converged ? 0 : 1;
+        if (!all_projected) tried_ = k;
         return true;
       }
-      if (mode_ == HessianMode::projected)
+      if (k + 1 == kTries.size())
         return fail(report, "the projected Hessian is not positive definite" + in_brackets(objective_->first_non_finite_derivative()));
-      mode_ = HessianMode::projected;
       ++report.hessian_fallbacks;
     }
   }
@@ -698,6 +709,7 @@ class SideStepper final : public Stepper {
   bool overshot_ = false;
   Real limit_ = 1;            // share of the last direction that its limits let go, the least of all components
   bool setting_out_ = false;  // the first updates of a step with links
+  std::size_t tried_ = 0;     // which Hessian gave the last direction: 0 as it is
   Real search_ms_ = 0, assembly_ms_ = 0, linear_ms_ = 0, ccd_ms_ = 0, line_search_ms_ = 0, front_ms_ = 0;
   int searches_ = 0;
   long long capped_before_ = 0;

@@ -96,6 +96,9 @@ const BodyMass& body_mass(const World& world, const State& state, std::size_t bo
 /// Closes the grips whose time has come: each spring's target starts where its vertex is now.
 void close_grips(const World& world, State& state);
 
+/// Of what a state must fit: triangles, shapes of strips at rest and of bodies, what carries each vertex, how triangles are cut into
+/// samples; of reduced rolls the collar and the mass of the tape.
+std::string world_hash(const World& world);
 /// Writes and reads the state exactly (HDF5, by a temporary name), with what is needed to refuse a snapshot of another scene.
 /// @param settings  text that goes with it
 void save_snapshot(const std::string& file, const World& world, const State& state, const std::string& settings = "");

@@ -51,7 +51,7 @@ class Simulation {
 
 /// The 19-mm vinyl tape of the paper's Table I.
 Film vinyl();
-/// The 48-mm packaging film of facts 18.
+/// A packaging film of 48 mm (data/tapes).
 Film packaging_film();
 /// A strip of that film, flat, from `start` along x, `cells` over its width.
 Strip flat_strip(Real length, int cells, const Vec3& start);

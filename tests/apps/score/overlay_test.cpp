@@ -81,7 +81,7 @@ TEST(Overlay, UndistortingAPictureMovesWhatItShowsToWhereTheIdealCameraSeesIt) {
 }
 TEST(Overlay, ARealPhotographIsReadAndUndistorted) {
   const fs::path folder = robot::test::real_data() / "opencv_calib";
-  if (!fs::exists(folder)) GTEST_SKIP() << folder << " is absent: set TAPESIM_REAL_DATA";
+  if (!fs::exists(folder)) GTEST_SKIP() << folder << " is absent: set TAPE_REAL_DATA";
   const cosim::Calibration camera = cosim::load_camera(folder / "left_intrinsics.yml").calibration;
   const render::Picture photograph = read_photograph(folder / "left01.jpg", camera);
   EXPECT_EQ(photograph.width, 640);

@@ -161,6 +161,14 @@ TEST_F(StudyCommand, ARunThatLeavesNothingToMeasureIsARowThatSaysSo) {
   EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
   EXPECT_THAT(read(folder / "out" / "study.csv"), ContainsRegex("\n1,0.01,,.*nothing was peeled\n2,0.02,,.*nothing was peeled\n"));
 }
+TEST_F(StudyCommand, WhereTheFinestRunFailsTheOthersAreShownAllTheSame) {
+  const std::string study = folder.file("study.yaml",
+                                        "study: worse\nscene: small.yaml\ngrid: {solver.max_newton: [200, 1]}\nagainst: {finest: true}\n"
+                                        "set: {solver.retries: 0, solver.velocity_tol: 1.0e-9, effects.gravity: on}\n");
+  const Outcome outcome = tapesim({"study", study, "--out", (folder / "out").string()});
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+  EXPECT_THAT(read(folder / "out" / "study.csv"), ContainsRegex("\n1,200,,.*,the finest run failed\n2,1,,.*max_newton"));
+}
 TEST_F(StudyCommand, AMistakeInAnyRunIsFoundBeforeTheFirst) {
   const std::string study = folder.file(
       "study.yaml", "study: late\nscene: small.yaml\ngrid: {time.dt: [0.05, -1]}\nagainst: {finest: true}\nset: {time.duration: 1000}\n");
@@ -249,6 +257,7 @@ TEST(ShippedScenes, StartSound) {
 
 TEST(Studies, ThatShipSetWhatTheirScenesHave) {
   for (const auto& entry : std::filesystem::directory_iterator(TAPE_SOURCE_DIR "/data/studies")) {
+    if (entry.path().extension() != ".yaml") continue;
     const cosim::SceneFile study = cosim::SceneFile::load(entry.path());
     if (study["replay"]) continue;  // of episodes: below
     const std::string scene = cosim::find_file(entry.path(), "scenes", study["scene"].text()).string();

@@ -92,16 +92,18 @@ class ReplayCommand : public testing::Test {
     const Outcome posed = replay("rec", {"--set", "exchange.schedule=posed", "--record", at("real.h5")});
     ASSERT_EQ(posed.exit_code, 0) << posed.err;
     start_counting("real");
+    variant_of_text("real", "set:\n  exchange.schedule: \"posed\"\n", "");  // what it was recorded with; each test says what it wants
   }
   static void TearDownTestSuite() { folder.reset(); }
   static std::string at(const std::string& name) { return (*folder / name).string(); }
 
   /// At 0.1 s: a recording shorter than the lead-in that is excluded by default has none.
-  static void start_counting(const std::string& episode) {
+  static void start_counting(const std::string& episode) { variant_of_text(episode, "lead_in: 0\n", "lead_in: 0.1\n"); }
+  /// In EPISODE.yaml itself.
+  static void variant_of_text(const std::string& episode, const std::string& from, const std::string& to) {
     std::string text = read(at(episode + ".yaml"));
-    const std::string none = "lead_in: 0\n";
-    ASSERT_NE(text.find(none), std::string::npos);
-    folder->file(episode + ".yaml", text.replace(text.find(none), none.size(), "lead_in: 0.1\n"));
+    ASSERT_NE(text.find(from), std::string::npos) << text;
+    folder->file(episode + ".yaml", text.replace(text.find(from), from.size(), to));
   }
   static Outcome replay(const std::string& episode, const std::vector<std::string>& more = {}) {
     std::vector<std::string> arguments{"replay", at(episode + ".yaml"), "--out", at("out_" + episode)};
@@ -229,6 +231,30 @@ TEST_F(ReplayCommand, TheLeadInIsNotCounted) {
   const std::vector<std::string> errors = column(at("out_stir/frames.csv"), "error_px");
   EXPECT_GT(std::stod(errors.at(0)), 40) << "but it is shown";
 }
+TEST_F(ReplayCommand, LandmarksAfterTheMotionsAreLeftOutAndRemarkedOn) {
+  variant("late_mark", [](Episode& e) { e.landmarks[0].landmarks.back().time = 5; });
+  const Outcome outcome = replay("late_mark", kPosed);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("late_mark: note: "));
+  EXPECT_LT(mean_error("late_mark"), 0.05);
+}
+/// What is in the folder of a run may be of another one, with other settings.
+TEST_F(ReplayCommand, PicturesAreOfTheRunThatTheyNarrate) {
+  variant("told_twice", nothing);
+  const std::string folder_of_run = at("out_told_twice/told_twice/none/1");
+  const auto run = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = kPosed;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    ASSERT_EQ(replay("told_twice", arguments).exit_code, 0);
+  };
+  const auto shown = [&] { return nlohmann::json::parse(read(folder_of_run + "/report.json"))["state_hash"].get<std::string>(); };
+  run({});
+  const std::string heavy = shown();
+  run({"--set", "gravity=[0, 0, -5]"});
+  EXPECT_NE(shown(), heavy);
+  run({"--still", "0.5"});
+  EXPECT_EQ(shown(), heavy);
+}
 TEST_F(ReplayCommand, AnEpisodeWithoutACameraIsReplayedAndNotScored) {
   variant_text("blind", {{"camera: ego\n", ""}, {"recording: blind.h5", "recording: real.h5"}});
   const Outcome outcome = replay("blind", kPosed);
@@ -240,9 +266,11 @@ TEST_F(ReplayCommand, FilesOfOthersScoreAsTheEpisodeThatHoldsTheSame) {
   const Episode real = cosim::read_episode(at("real.h5"));
   std::ostringstream motion, marks;
   motion.precision(17), marks.precision(17);
-  motion << "stamp,slide_mm\n";
-  for (std::size_t i = 0; i < real.streams[0].times.size(); ++i)
-    motion << real.streams[0].times[i] << ',' << 1e3 * real.streams[0].measured[i][0] << '\n';
+  motion << "stamp,slide_mm,half_mm\n";
+  for (std::size_t i = 0; i < real.streams[0].times.size(); ++i) {
+    const double slide = 1e3 * real.streams[0].measured[i][0];
+    motion << real.streams[0].times[i] << ',' << slide << ',' << slide / 2 << '\n';
+  }
   marks << "time_s,u [px],v [px],kind,visible,estimated\n";
   for (const Landmark& mark : real.landmarks[0].landmarks)
     marks << mark.time << ',' << mark.pixel.x() << ',' << mark.pixel.y() << ",rim,1,0\n";
@@ -259,6 +287,9 @@ TEST_F(ReplayCommand, FilesOfOthersScoreAsTheEpisodeThatHoldsTheSame) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("others: by hand"));
   EXPECT_LT(mean_error("others"), 0.05);
+  variant_of_text("others", "slide_mm", "half_mm");
+  ASSERT_EQ(replay("others", kPosed).exit_code, 0);
+  EXPECT_GT(mean_error("others"), 10) << "another column of the same file: the run that is kept is not of it";
 
   const auto refused = [&](const std::string& recording) {
     folder->file("bad.yaml", head + "recording:\n" + recording);
@@ -419,6 +450,31 @@ TEST_F(ReplayCommand, BadEpisodesAreRefusedByName) {
        edited({{"\"tray:slide\": {drives: \"tray:slide\"", "\"tray:glide\": {drives: \"tray:slide\""}}),
        {"joint_missing.yaml", "joints.tray:glide", "no such joint"}},
       {"unit_wrong", edited({{"unit: m}", "unit: mm}"}}), {"unit_wrong.yaml", "unit = mm", "is recorded in m"}},
+      {"turns",
+       [](const std::string& name) {
+         variant(name, [](Episode& e) { e.streams[0].joints[0].unit = cosim::Unit::rad; }, {{"unit: m}", "unit: rad}"}});
+       },
+       {"turns.yaml", "tray:slide slides", "recorded in rad"}},
+      {"apart",
+       [](const std::string& name) {
+         variant(name, [](Episode& e) {
+           cosim::MotionStream& late = e.streams.emplace_back(e.streams[0]);
+           late.name = "late", late.joints[0].name = "late";
+           for (double& t : late.times) t += 10;
+         });
+       },
+       {"apart.yaml", "no time in common"}},
+      {"nowhere",
+       [](const std::string& name) { variant(name, [](Episode& e) { e.cameras[0].mount = "tray:nolink"; }); },
+       {"nowhere.yaml", "a camera stands on tray:nolink"}},
+      {"folded",
+       [](const std::string& name) {
+         variant(name, [](Episode& e) {
+           e.cameras[0].calibration.lens = {.k1 = -0.5};
+           e.landmarks[0].landmarks.back().pixel = {80, 239.5};
+         });
+       },
+       {"folded.yaml", "the landmark of camera ego at 0.8 s"}},
       {"no_robot", edited({{"drives: \"tray:slide\"", "drives: \"arm:slide\""}}), {"no_robot.yaml", "arm:slide is of no robot"}},
       {"camera_wrong", edited({{"camera: ego", "camera: egg"}}), {"camera_wrong.yaml", "camera = egg", "ego, wrist"}},
       {"other_lens",
@@ -428,8 +484,12 @@ TEST_F(ReplayCommand, BadEpisodesAreRefusedByName) {
        },
        {"hd.yaml", "1280 x 720 px", "848 x 480 px"}},
       {"late_marks",
-       [](const std::string& name) { variant(name, [](Episode& e) { e.landmarks[0].landmarks.back().time = 5; }); },
-       {"late_marks.yaml", "has a landmark at 5 s, after its motions"}},
+       [](const std::string& name) {
+         variant(name, [](Episode& e) {
+           for (Landmark& mark : e.landmarks[0].landmarks) mark.time += 5;
+         });
+       },
+       {"late_marks.yaml", "no landmark is visible", "to the end of the motions"}},
       {"no_marks",
        [](const std::string& name) { variant(name, [](Episode& e) { e.landmarks.erase(e.landmarks.begin()); }); },
        {"no_marks.yaml", "camera = ego", "no landmarks"}},

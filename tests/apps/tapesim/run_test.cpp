@@ -322,7 +322,8 @@ TEST_F(BadInput, ATruncatedOrForeignSnapshotIsRefused) {
     EXPECT_EQ(outcome.exit_code, 2) << bytes;
     EXPECT_THAT(outcome.err, HasSubstr("cut.h5")) << bytes;
   }
-  EXPECT_EQ(run("b", {"--resume", (folder / "a" / "snapshot.h5").string(), "--set", "strip.cells_across=3"}).exit_code, 2);
+  for (const char* other : {"strip.cells_across=3", "bodies.table.size=[0.1, 0.12, 0.02]"})
+    EXPECT_EQ(run("b", {"--resume", (folder / "a" / "snapshot.h5").string(), "--set", other}).exit_code, 2) << other;
   EXPECT_EQ(run("b", {"--resume", (folder / "none.h5").string()}).exit_code, 2);
   EXPECT_FALSE(std::filesystem::exists(folder / "b"));
 }

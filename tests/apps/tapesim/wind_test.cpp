@@ -89,6 +89,14 @@ TEST_F(Wind, ASnapshotGoesOnOnlyWithTheModelThatMadeIt) {
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("it remembers pairs of 'cohesion'"));
 }
+TEST_F(Wind, ASnapshotOfAReducedRollGoesOnOnlyWithItsCollar) {
+  ASSERT_EQ(wind().exit_code, 0);
+  ASSERT_EQ(run("a", {"--steps", "2", "--model", "coh-r"}).exit_code, 0);
+  const std::string snapshot = (folder / "a" / "snapshot.h5").string();
+  const Outcome outcome = run("b", {"--resume", snapshot, "--model", "coh-r", "--set", "cluster.collar=6"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("collar"));
+}
 TEST_F(Wind, AnOutputThatCannotBeWrittenIsFoundBeforeTheWork) {
   const Outcome outcome = tapesim({"wind", kFilm, "--turns", "32", "--out", "/dev/full/roll.h5"});
   EXPECT_EQ(outcome.exit_code, 2);

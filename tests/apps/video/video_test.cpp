@@ -95,6 +95,7 @@ TEST_F(Video, SaysSoWhereFfmpegIsMissing) {
   EXPECT_NE(text.find("ffmpeg"), std::string::npos) << text;
   EXPECT_NE(text.find("install"), std::string::npos) << text;
   EXPECT_TRUE(fs::is_empty(folder));
+  EXPECT_THROW(require_ffmpeg(), InputError);
 }
 
 TEST_F(Video, RepeatsWhatFfmpegSaysWhereItFails) {

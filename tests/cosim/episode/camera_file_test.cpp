@@ -91,7 +91,7 @@ TEST(CameraFile, AFileOfOpenCvIsRead) {
 }
 TEST(CameraFile, TheCalibrationOfARealCameraIsRead) {
   const fs::path file = robot::test::real_data() / "realsense_d455_848x480" / "d455_color_848x480.yaml";
-  if (!fs::exists(file)) GTEST_SKIP() << file << " is absent: set TAPESIM_REAL_DATA";
+  if (!fs::exists(file)) GTEST_SKIP() << file << " is absent: set TAPE_REAL_DATA";
   const Calibration camera = load_camera(file).calibration;
   EXPECT_EQ(camera.width, 848);
   EXPECT_EQ(camera.fx, 416.85223429743274);
@@ -101,6 +101,7 @@ TEST(CameraFile, TheCalibrationOfARealCameraIsRead) {
 TEST(CameraFile, BadOnesAreRefusedByLineAndKey) {
   expect_refused(replaced(kRos, "plumb_bob", "equidistant"), ":8: distortion_model = equidistant: unknown (allowed: plumb_bob, radtan)");
   expect_refused(replaced(kRos, "[-0.28, 0.09, 0.0007, -0.0004, -0.012]", "[0, 0, 0, 0, 0, 0, 0, 0]"), "distortion_coefficients.data");
+  expect_refused(replaced(kRos, "distortion_coefficients", "dist_coeffs"), "distortion_coefficients.data");
   expect_refused(replaced(kRos, "-0.28", ".nan"), "distortion_coefficients.data.0 = .nan");
   expect_refused(replaced(kRos, "[610.5, 0.0,", "[610.5, 0.3,"), "camera_matrix.data");
   expect_refused(replaced(kRos, "610.5", "-610.5"), "camera.fx = -610.5");

@@ -29,7 +29,7 @@ std::vector<cv::Point2f> corners(const fs::path& photograph) {
 
 TEST(Checkerboards, ReprojectionErrorsOfThePhotographsAreThePublishedOnesToFourDigits) {
   const fs::path file = kFolder / "left_intrinsics.yml";
-  if (!fs::exists(file)) GTEST_SKIP() << file << " is absent: set TAPESIM_REAL_DATA";
+  if (!fs::exists(file)) GTEST_SKIP() << file << " is absent: set TAPE_REAL_DATA";
   const Calibration camera = load_camera(file).calibration;
   std::string text = read_whole_file(file, file.string());
   text[0] = '#';

@@ -97,7 +97,7 @@ TEST_F(Import, LandmarksAreReadAndBadOnesRefused) {
 }
 TEST_F(Import, RealTeleoperationOfARobotWithHandsBecomesAnEpisode) {
   const std::filesystem::path set = robot::test::real_data() / "g1_inspire_lerobot", csv = set / "csv_converted" / "episode_000002.csv";
-  if (!std::filesystem::exists(csv)) GTEST_SKIP() << csv << " is absent: set TAPESIM_REAL_DATA";
+  if (!std::filesystem::exists(csv)) GTEST_SKIP() << csv << " is absent: set TAPE_REAL_DATA";
   const LeRobotUnits units{.of = {{"k*Hand*", Unit::one}}};
   Episode episode{.name = "bottle", .origin = csv.string(), .streams = {import_lerobot(set, 2, csv, units)}};
   write_episode(folder / "bottle.h5", episode);
@@ -111,7 +111,7 @@ TEST_F(Import, RealTeleoperationOfARobotWithHandsBecomesAnEpisode) {
 }
 TEST_F(Import, RecordingsAndCommandsOfARealArmBecomeMotions) {
   const std::filesystem::path recordings = robot::test::real_data() / "marvin_m6_ccs" / "recordings", urdf = robot::test::marvin_arm();
-  if (!std::filesystem::exists(urdf)) GTEST_SKIP() << urdf << " is absent: set TAPESIM_REAL_DATA";
+  if (!std::filesystem::exists(urdf)) GTEST_SKIP() << urdf << " is absent: set TAPE_REAL_DATA";
   const robot::RobotModel model = robot::read_urdf(urdf);
   std::vector<std::string> names;
   for (const robot::Joint& joint : model.joints) names.push_back(joint.name);

@@ -156,6 +156,54 @@ TEST(Exchange, APadPressesTheTapeWithItsDrivesForce) {
   for (int k = 0; k < 40; ++k) ASSERT_TRUE(both.step()) << both.report.failure;
   EXPECT_NEAR(both.link(0, 0).normal.force.z(), 5, 0.02 * 5);
 }
+/// A ram on a slide, a strip and a plate on a slide of its own, without weight: the ram pushes with 5 N.
+struct Ram {
+  std::unique_ptr<Coupled> both;
+  explicit Ram(double mass, robot::Joint slide) {
+    const auto along = [](const char* name, double kilograms, const Vec3& size, const robot::Joint& j) {
+      RobotModel model{.name = name};
+      model.links = {{.name = "rail"}, box_link("block", kilograms, size)};
+      model.joints = {j};
+      return model;
+    };
+    RobotScene scene;
+    scene.world.gravity.setZero();
+    scene.robots = {part("ram", along("ram", 2 * mass, Vec3(0.012, 0.012, 0.01), joint("slide", slide.type, -Vec3::UnitZ(), Vec3::Zero())),
+                         Vec3(0, 0, 0.0056)),
+                    part("plate", along("plate", mass, Vec3(0.03, 0.03, 0.01), slide), Vec3(0, 0, -0.0056))};
+    scene.robots[0].push = {5};
+    both = std::make_unique<Coupled>(free_strip(0.01, 1e-4), scene);
+  }
+  void step() { ASSERT_TRUE(both->step()) << both->report.failure; }
+  Real force() const { return both->link(0, 0).normal.force.z(); }
+};
+robot::Joint upward_slide() { return joint("slide", robot::JointType::prismatic, Vec3::UnitZ(), Vec3::Zero()); }
+/// The tape solver is told what Bullet knows of a joint: else the plate would give way to it and come back step by step.
+TEST(Exchange, WhatFrictionOrALimitHoldsBearsThePressAtOnce) {
+  robot::Joint sticks = upward_slide(), stops = upward_slide();
+  sticks.friction = 10;
+  stops.lower = 0, stops.upper = 0.01, stops.damping = 2;  // or it bounces
+  for (const robot::Joint& slide : {sticks, stops}) {
+    Ram ram(0.02, slide);
+    for (int k = 0; k < 30; ++k) ram.step();
+    EXPECT_NEAR(ram.force(), 5, 0.02 * 5) << "friction " << slide.friction;
+    EXPECT_LT(ram.both->report.link_mismatch, 1e-5);
+  }
+}
+/// Friction of 3 N under a plate of 1 kg gives way to a ram of 2 kg: they move on together by (5 - 3)/3 m/s^2.
+TEST(Exchange, FrictionThatIsOvercomeGoesOnBraking) {
+  robot::Joint slide = upward_slide();
+  slide.friction = 3;
+  Ram ram(1, slide);
+  Real mean = 0, speed = 0;
+  for (int k = 0; k < 30; ++k) {
+    ram.step();
+    if (k == 9) speed = ram.both->bullet().state(1).v[0];
+    if (k >= 10) mean += ram.force() / 20;
+  }
+  EXPECT_NEAR(mean, 3 + 2.0 / 3, 0.02 * 3);
+  EXPECT_NEAR(ram.both->bullet().state(1).v[0] - speed, -0.2 * 2 / 3, 0.05 * 0.2 * 2 / 3);
+}
 /// The finger again, with a box under the strip: its drive comes to its limit as soon as it presses.
 TEST(Exchange, ADriveAtItsLimitPressesWithThat) {
   constexpr Real kLimit = 0.05;  // [N m], 1.25 N at the tip

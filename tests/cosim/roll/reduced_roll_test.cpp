@@ -144,7 +144,6 @@ Real hub_angle(const char* model, Real dt, Real time) {
   const std::unique_ptr<Stepper> stepper = make_stepper(Backend::cpu, world);
   State state = State::start(world);
   const auto steps = static_cast<int>(std::lround(time / dt));
-  const Mat3 start = state.bodies[0].pose.rotation;
   // The roll spins at two turns a second as a whole.
   const Vec3 spin(0, 4 * std::numbers::pi, 0), axis = state.bodies[0].pose.position;
   for (std::size_t v = 0; v < state.v.size(); ++v) state.v[v] = spin.cross(state.x[v] - axis);
@@ -154,16 +153,21 @@ Real hub_angle(const char* model, Real dt, Real time) {
     body.velocity = spin.cross(body.pose.position - axis);
     body.angular_momentum = R * inertia_tensor(body_mass(world, state, b).second) * R.transpose() * spin;
   }
-  for (int k = 0; k < steps; ++k) EXPECT_TRUE(stepper->step(state).ok) << model << " step " << k;
-  const Vec3 turned = (state.bodies[0].pose.rotation * start.transpose()).col(0);
-  return std::atan2(-turned.z(), turned.x()) * 180 / std::numbers::pi;
+  Real angle = 0;
+  for (int k = 0; k < steps; ++k) {
+    const Mat3 before = state.bodies[0].pose.rotation;
+    EXPECT_TRUE(stepper->step(state).ok) << model << " step " << k;
+    const Vec3 turned = (state.bodies[0].pose.rotation * before.transpose()).col(0);
+    angle += std::atan2(-turned.z(), turned.x()) * 180 / std::numbers::pi;
+  }
+  return angle;
 }
 }  // namespace
 
 TEST(ReducedRoll, TurnsAsTheFullShellDoes) {
-  const Real full = hub_angle("coh-f", 1e-3, 0.1), reduced = hub_angle("coh-r", 1e-3, 0.1);
-  EXPECT_NEAR(reduced, full, 0.3);
-  EXPECT_GT(full, 30) << "nearly a quarter of a turn, with the free end hanging on";
+  const Real full = hub_angle("coh-f", 1e-3, 0.3), reduced = hub_angle("coh-r", 1e-3, 0.3);
+  EXPECT_NEAR(reduced, full, 1);
+  EXPECT_GT(full, 60) << "with the free end hanging on";
 }
 
 TEST(ReducedRoll, GoesOnBitForBitFromASnapshotBeforeAndAfterARelease) {
@@ -174,6 +178,7 @@ TEST(ReducedRoll, GoesOnBitForBitFromASnapshotBeforeAndAfterARelease) {
     const auto tip = static_cast<std::size_t>(world.assembly.strips[0].vertices - 1);
     for (std::size_t v = tip - 27; v <= tip; ++v) state.v[v] = Vec3(0, 0, 20);  // the end is flung off the roll
     const File file;
+    const State first = state;
     const int members = members_of(world, state);
     for (int part = 0; part < 4; ++part) {
       save_snapshot(file.path.string(), world, state);
@@ -187,5 +192,8 @@ TEST(ReducedRoll, GoesOnBitForBitFromASnapshotBeforeAndAfterARelease) {
       EXPECT_EQ(again.hash(), state.hash()) << model << ", part " << part;
     }
     EXPECT_LT(members_of(world, state), members) << model << ": nothing was released";
+    State again = first, fresh = first;  // what has woken sleeps again
+    ASSERT_TRUE(stepper->step(again).ok && make_stepper(Backend::cpu, world)->step(fresh).ok);
+    EXPECT_EQ(again.hash(), fresh.hash()) << model;
   }
 }

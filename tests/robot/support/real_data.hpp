@@ -3,10 +3,10 @@
 #include <filesystem>
 
 namespace robot::test {
-/// $TAPESIM_REAL_DATA, or ../shared/data beside the checkout. Robots and recordings of others, not part of this project: tests skip
+/// $TAPE_REAL_DATA, or ../shared/data beside the checkout. Robots and recordings of others, not part of this project: tests skip
 /// where they are absent.
 inline std::filesystem::path real_data() {
-  const char* folder = std::getenv("TAPESIM_REAL_DATA");
+  const char* folder = std::getenv("TAPE_REAL_DATA");
   return folder ? std::filesystem::path(folder) : std::filesystem::path(TAPE_SOURCE_DIR) / ".." / "shared" / "data";
 }
 inline std::filesystem::path marvin_arm() {

@@ -14,7 +14,7 @@ constexpr Real kCut = 0.0153;   // [m] place of the cut along a strip of 30 mm
 constexpr Real kBelow = -1e-4;  // [m] height of a large triangle under it
 const Vec3 kSlip(2e-5, -1e-5, 0);
 
-/// A flat strip over one large triangle, cut across. One more vertex stands over the strip beside the kerf.
+/// A flat strip over one large triangle that is there twice, cut across. One more vertex stands over the strip beside the kerf.
 struct Over {
   StripMesh mesh = make_strip_mesh({.length = 0.03, .cells_across = 4}, 0.019, 1);
   Cut cut = cut_kerf(mesh, {{kCut, -0.02}, {kCut, 0.02}}, {}, {});
@@ -27,7 +27,7 @@ struct Over {
     triangles = strip.triangles;
     const int n = static_cast<int>(x.size());
     x.insert(x.end(), {Vec3(-0.1, -0.1, kBelow), Vec3(0.2, -0.1, kBelow), Vec3(0, 0.2, kBelow), Vec3(kCut + 0.0011, 0.0013, 1e-4)});
-    triangles.emplace_back(n, n + 1, n + 2);
+    for (int twice = 0; twice < 2; ++twice) triangles.emplace_back(n, n + 1, n + 2);
   }
   CutInWorld in_world() const {
     CutInWorld out{.cut = cut, .old_mesh = mesh, .old_triangles = {}, .triangles = {}, .old_x = {}, .x = {}, .samples = 2};
@@ -102,6 +102,38 @@ TEST(CutAdhesion, NewVerticesHoldAsThoseAroundThemDid) {
     fresh += over.cut.parent[static_cast<std::size_t>(m.vertex)].weight.maxCoeff() < 1;
   }
   EXPECT_GT(fresh, 5);
+}
+/// What holds a vertex with two triangles holds a new one with each as much as with the other before.
+TEST(CutAdhesion, NewVerticesHoldEachTriangleAsTheOthersDid) {
+  const Over over;
+  const int second = over.large + 1;
+  EffectMemory memory;
+  auto& held = std::get<MemoryOf<Cohesion>>(memory).pairs;
+  for (int v = 0; v < static_cast<int>(over.mesh.rest.size()); ++v) {
+    held.push_back({{v, over.large}, 0.9, Vec3::Zero()});
+    held.push_back({{v, second}, 0.1, Vec3::Zero()});
+  }
+  const auto pairs = std::get<MemoryOf<Cohesion>>(carried_over(over.world, memory)).pairs;
+  EXPECT_EQ(pairs.size(), 2 * over.cut.mesh.rest.size());
+  for (const Cohesion::Memory& m : pairs) EXPECT_NEAR(m.beta, m.triangle == over.world.new_triangle(second) ? 0.1 : 0.9, 1e-12);
+}
+/// Bonds that have let go hold nothing that could be taken over.
+TEST(CutAdhesion, ReleasedBondsAreNotTakenOver) {
+  const Over over;
+  EffectMemory memory;
+  for (int v = 0; v < static_cast<int>(over.mesh.rest.size()); ++v) {
+    const Mat3 old = spanned(over.world.old_x, v, over.world.old_triangles[static_cast<std::size_t>(over.large)]);
+    const bool released = over.mesh.rest[static_cast<std::size_t>(v)].y() > 0;
+    std::get<MemoryOf<Bonds>>(memory).pairs.push_back({{v, over.large}, released ? 5 : 0, 9e-5, old.inverse()});
+  }
+  int fresh = 0;
+  const auto pairs = std::get<MemoryOf<Bonds>>(carried_over(over.world, memory)).pairs;
+  for (const Bonds::Memory& m : pairs) {
+    if (over.cut.parent[static_cast<std::size_t>(m.vertex)].weight.maxCoeff() == 1) continue;
+    EXPECT_EQ(m.cooldown, 0);
+    ++fresh;
+  }
+  EXPECT_GT(fresh, 1);
 }
 TEST(CutAdhesion, NewSamplesAreAsFarOpenAndSlipped) {
   const Over over;

@@ -153,6 +153,20 @@ TEST(ProjectBlade, AHelixThatLiesUnderTheBladeTwiceIsRefused) {
       project_blade(mesh, x, {{0.018, 0, 5e-3}, {0.042, 0, 5e-3}}, {triangle_at(mesh, {r * kPi / 2, 0})}, 1e-3, {.reach = 0.05});
   EXPECT_THAT(found.refusal, HasSubstr("more than once"));
 }
+TEST(ProjectBlade, TwoStrandsBesideEachOtherAreRefusedAndOneOfThemIsNot) {
+  // Out, and back beside itself; the blade lies across both.
+  const StripMesh mesh = strip();
+  const std::vector<Vec3> x = placed(
+      mesh, [](const Vec2& p) { return p.x() < kLength / 2 ? Vec3(p.x(), p.y(), 0) : Vec3(kLength - p.x(), kWidth + 1e-3 - p.y(), 0); });
+  const std::vector<Vec3> blade{{0.013, -0.02, 1e-4}, {0.013, 0.04, 1e-4}};
+  const int out = triangle_at(mesh, {0.013, 0}), back = triangle_at(mesh, {kLength - 0.013, 0});
+  EXPECT_THAT(project_blade(mesh, x, blade, {out, back}, 1e-3, {}).refusal, HasSubstr("beside itself"));
+  for (int target : {out, back}) {
+    const Projection found = project_blade(mesh, x, blade, {target}, 1e-3, {});
+    ASSERT_TRUE(found) << found.refusal;
+    for (const Vec2& p : found.line) EXPECT_NEAR(p.x(), target == out ? 0.013 : kLength - 0.013, 1e-9);
+  }
+}
 TEST(ProjectBlade, AnEdgeOnBladeIsRefused) {
   const StripMesh mesh = strip();
   const std::vector<Vec3> x = placed(mesh, [](const Vec2& p) { return Vec3(p.x(), p.y(), 0); });

@@ -132,7 +132,7 @@ TEST(Winding, PitchIsTheFilmsThicknessAndTheHubIsAsFarAsTheNextLayer) {
   EXPECT_EQ(w.pitch, 1.8e-4);
   EXPECT_NEAR(w.radius, 0.021235, 1e-17);  // 21.1 mm + xi 0.045 + gap 0.09
   EXPECT_NEAR(w.outer_radius(), 0.026995, 1e-16);
-  Film authors = kVinyl;  // facts 6: R_hub + t + dhat/2, for layers that rest dhat/2 beyond contact
+  Film authors = kVinyl;  // the paper's rolls: R_hub + t + dhat/2, for layers that rest dhat/2 beyond contact
   authors.xi = 9e-5;
   EXPECT_NEAR(make_winding({.pitch = 2.7e-4}, {}, authors).radius, 0.0211 + 9e-5 + 9e-5, 1e-17);
 }

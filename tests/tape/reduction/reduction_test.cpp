@@ -170,7 +170,7 @@ std::vector<int> front(const Reduced& r, int v, const Vec3& moved, Gate gate, co
   x[static_cast<std::size_t>(v)] += moved;
   const Pose hub{rotation_exp(Vec3(std::numbers::pi / 2, 0, 0)),
                  x[static_cast<std::size_t>(v)] - moved - Vec3(0, 0, 0.02)};  // its axis is y
-  return pass_front({r.assembly, r.part(), x, pose, hub}, r.cluster, r.carriage().next[0], gate, 9e-4, bonds);
+  return pass_front({r.assembly, r.part(), r.assembly.bodies[0], x, pose, hub}, r.cluster, r.carriage().next[0], gate, 9e-4, bonds);
 }
 constexpr int kNext = kColumns * 8 + 1, kSecond = kColumns * 7 + 1;  // one and two edges from the free tape
 }  // namespace
@@ -198,7 +198,7 @@ TEST(Front, BondsOpenItOnlyWhereTheyGaveWayAndNoneHolds) {
   const std::vector<Bonds::Memory> two = {bond(kNext, 0, 0), bond(kNext, 1, 0)}, one = {two[1]}, none = {};
   const auto passes = [&](const std::vector<Bonds::Memory>& now) { return !front(r, kNext, off, Gate::euclidean, &now).empty(); };
   const std::vector<Vec3> x(r.assembly.x.size(), Vec3::Zero());
-  const FrontView view{r.assembly, r.part(), x, {}, {}};
+  const FrontView view{r.assembly, r.part(), r.assembly.bodies[0], x, {}, {}};
   EXPECT_FALSE(passes(none)) << "no bond has let it go";
   mark_released(view, two, one, r.cluster);
   EXPECT_FALSE(passes(one)) << "one still holds it";
@@ -206,4 +206,11 @@ TEST(Front, BondsOpenItOnlyWhereTheyGaveWayAndNoneHolds) {
   EXPECT_TRUE(passes({bond(kNext, 1, 3)})) << "one that was released holds nothing";
   // Free tape that lies on the roll again holds it, but not in its place.
   EXPECT_TRUE(passes({bond(kNext, r.part().triangles - 1, 0)}));
+  // What it sticks to beside the roll neither holds it there nor lets it go.
+  r.assembly.triangles.emplace_back(100, 101, 102);
+  const Bonds::Memory aside = bond(kNext, static_cast<int>(r.assembly.triangles.size()) - 1, 0);
+  EXPECT_TRUE(passes({aside}));
+  r.cluster.released.clear();
+  mark_released(view, {aside}, none, r.cluster);
+  EXPECT_FALSE(passes(none));
 }

@@ -232,6 +232,10 @@ TEST(Cut, AKerfThatWouldCloseIsRefused) {
   tape::Setup setup = strip_under_blade(2e-3);
   setup.cutting.kerf.width = 2 * test::vinyl().xi + setup.scene.dhat();  // 0.27 mm
   EXPECT_THROW(World::build(setup), InputError);
-  setup.cutting.kerf.width *= 1.01;
+  setup.cutting.kerf.width *= 1.04;
+  EXPECT_THROW(World::build(setup), InputError) << "what a cut asks of the clearance";
+  setup.cutting.kerf.width *= 1.02;
   EXPECT_NO_THROW(World::build(setup));
+  setup.cutting.kerf.clearance = 2e-3;
+  EXPECT_THROW(World::build(setup), InputError);
 }

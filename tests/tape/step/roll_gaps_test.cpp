@@ -124,13 +124,13 @@ TEST(RollGaps, AreTheTrueDistancesOfTheSection) {
     EXPECT_EQ(gaps.layers.vertices, layers.vertices) << turns;
     EXPECT_EQ(gaps.hub.apart, hub.apart) << turns;
     EXPECT_EQ(gaps.layers.apart, 0) << turns;
-    // prototype.md, Q1, for cells of 3.17 mm: 32 to 149 um; gap 90 um, sagitta 59 um
+    // For cells of 3.17 mm another program found 32 to 149 um: the gap of 90 um less and more the sagitta of 59 um.
     EXPECT_NEAR(gaps.smallest, 32e-6, 1e-6) << turns;
     EXPECT_NEAR(gaps.layers.largest, 149e-6, 1e-6) << turns;
   }
 }
 
-TEST(RollGaps, AreWithinTheSagittaOfTheirChordsForFinerCells) {  // prototype.md, Q1: 64..111 and 76..102 um
+TEST(RollGaps, AreWithinTheSagittaOfTheirChordsForFinerCells) {  // another program: 64 to 111 and 76 to 102 um
   for (Real cell : {0.019 / 9, 0.019 / 12}) {
     const World world = World::build(roll_setup({.turns = 8}, cell));
     const RollGaps gaps = gaps_of(world);

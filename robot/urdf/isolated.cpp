@@ -1,4 +1,4 @@
-#include "cosim/scene/isolated.hpp"
+#include "robot/urdf/isolated.hpp"
 
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -7,11 +7,12 @@
 
 #include <cerrno>
 #include <csignal>
+#include <cstring>
 #include <fstream>
 
-#include "tape/core/error.hpp"
+#include "robot/model/robot_model.hpp"
 
-namespace cosim {
+namespace robot {
 namespace {
 void limit_memory(std::size_t megabytes) {
   rlim_t pages = 0;
@@ -46,7 +47,7 @@ void limit_memory(std::size_t megabytes) {
 
 std::optional<std::string> run_isolated(const std::function<std::string()>& work, unsigned seconds, std::size_t megabytes) {
   int ends[2];
-  TAPE_CHECK(pipe2(ends, O_CLOEXEC) == 0);
+  if (pipe2(ends, O_CLOEXEC) != 0) throw InputError(std::string("no pipe to a child process: ") + std::strerror(errno));
   const pid_t child = fork();
   if (child == 0) run_child(work, ends[1], seconds, megabytes);
   close(ends[1]);
@@ -58,11 +59,11 @@ std::optional<std::string> run_isolated(const std::function<std::string()>& work
     if (n < 0 && errno != EINTR) break;
   }
   close(ends[0]);
-  TAPE_CHECK(child > 0);
+  if (child < 0) throw InputError("no child process can be made");
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return std::nullopt;
   return result;
 }
-}  // namespace cosim
+}  // namespace robot

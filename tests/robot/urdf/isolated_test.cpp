@@ -1,4 +1,4 @@
-#include "cosim/scene/isolated.hpp"
+#include "robot/urdf/isolated.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -6,7 +6,7 @@
 #include <csignal>
 #include <stdexcept>
 #include <string>
-using namespace cosim;
+using namespace robot;
 
 TEST(Isolated, WhatTheWorkReturnsArrives) {
   EXPECT_EQ(run_isolated([] { return std::string(); }, 10, 100), "");
