@@ -95,8 +95,7 @@ class Objective {
   Real contact_energy(const StateView& s, const std::vector<VertexTriangle>& pairs, const detail::SurfaceView& surface);
   EnergySum energy(const StateView& s);
   /// Gradient and matrix at s.
-  /// @param fixed, contact  of the effects whose pattern is that of the strips, and of those between things
-  void linearize(const StateView& s, HessianMode fixed, HessianMode contact);
+  void linearize(const StateView& s, HessianMode mode);
   Span<const Vec3> gradient() const { return gradient_.span(); }
   const BlockMatrix& matrix() const { return matrix_; }
   /// Calls f(std::type_identity<effect>, forces) with what each effect exerts at s on the first `blocks` of unknowns [N; N m for

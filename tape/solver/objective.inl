@@ -382,10 +382,10 @@ void Objective::for_each_force(const StateView& s, int blocks, const F& f) {
   }
 }
 
-inline void Objective::linearize(const StateView& s, HessianMode fixed, HessianMode contact) {
+inline void Objective::linearize(const StateView& s, HessianMode mode) {
   set_pattern(s, true);
-  fill(s, fixed, false, true);
-  fill(s, contact, true, true);
+  fill(s, mode, false, true);
+  fill(s, mode, true, true);
   matrix_.accumulate_fixed(fixed_.hessian.span());
   matrix_.set_contact_pattern(contact_.keys.span());
   matrix_.accumulate_contact(contact_.hessian.span());

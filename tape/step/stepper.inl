@@ -1,6 +1,5 @@
 #pragma once
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <numeric>
@@ -451,7 +450,6 @@ class SideStepper final : public Stepper {
     };
     overshot_ = false;
     setting_out_ = articulations_.any();
-    tried_ = 0;
     for (int k = 0; k < params.max_newton; ++k) {
       ++report.newton;
       if (!find_direction(report)) return false;
@@ -523,17 +521,13 @@ class SideStepper final : public Stepper {
            moved * rate / (1 - rate) <= world_.setup.newton.velocity_tol * dt_;
   }
 
-  /// direction_ = -H^-1 g, right_ = -g. The Hessian as it is, then with contact, friction and adhesion projected, then all of it: the first
-  /// that is positive definite; where the last direction needed more than the first, from one less on.
+  /// direction_ = -H^-1 g, right_ = -g.
   bool find_direction(StepReport& report) {
-    constexpr HessianMode kExact = HessianMode::exact, kProjected = HessianMode::projected;
-    constexpr std::array<std::pair<HessianMode, HessianMode>, 3> kTries{{{kExact, kExact}, {kExact, kProjected}, {kProjected, kProjected}}};
-    const bool all_projected = setting_out_ || world_.setup.newton.hessian == kProjected;
-    for (std::size_t k = all_projected ? 2 : tried_ > 0 ? tried_ - 1 : 0;; ++k) {
-      mode_ = kTries[k].second;
+    mode_ = setting_out_ ? HessianMode::projected : world_.setup.newton.hessian;
+    for (;;) {
       {
         const Stopwatch watch(assembly_ms_);
-        objective_->linearize(view(now_), kTries[k].first, kTries[k].second);
+        objective_->linearize(view(now_), mode_);
         parallel_for(right_.size(), stepping::Negate{objective_->gradient(), right_.span()});
       }
       const Stopwatch watch(linear_ms_);
@@ -543,11 +537,11 @@ class SideStepper final : public Stepper {
       report.linear_iterations += solved.iterations;
       if (!solved.negative_curvature) {
         report.linear_failures += solved.converged ? 0 : 1;
-        if (!all_projected) tried_ = k;
         return true;
       }
-      if (k + 1 == kTries.size())
+      if (mode_ == HessianMode::projected)
         return fail(report, "the projected Hessian is not positive definite" + in_brackets(objective_->first_non_finite_derivative()));
+      mode_ = HessianMode::projected;
       ++report.hessian_fallbacks;
     }
   }
@@ -709,7 +703,6 @@ class SideStepper final : public Stepper {
   bool overshot_ = false;
   Real limit_ = 1;            // share of the last direction that its limits let go, the least of all components
   bool setting_out_ = false;  // the first updates of a step with links
-  std::size_t tried_ = 0;     // which Hessian gave the last direction: 0 as it is
   Real search_ms_ = 0, assembly_ms_ = 0, linear_ms_ = 0, ccd_ms_ = 0, line_search_ms_ = 0, front_ms_ = 0;
   int searches_ = 0;
   long long capped_before_ = 0;

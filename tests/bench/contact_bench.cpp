@@ -157,7 +157,7 @@ void BarrierHessian(benchmark::State& state) {
 void BarrierSystem(benchmark::State& state) {
   Scene& s = scene(state);
   s.potential->set_candidates(s.search.candidates());
-  for (auto _ : state) s.potential->linearize(s.view(), HessianMode::projected, HessianMode::projected);
+  for (auto _ : state) s.potential->linearize(s.view(), HessianMode::projected);
   count(state, s.pairs());
 }
 void StepLimits(benchmark::State& state) {
