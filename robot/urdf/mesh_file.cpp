@@ -92,8 +92,8 @@ TriangleMesh unpacked(const std::string& bytes, const std::string& name) {
   TriangleMesh mesh;
   mesh.vertices.resize(vertices);
   for (Vec3& v : mesh.vertices) take(v.data(), 3);
-  std::array<int, 3> t{};
-  for (const char* const end = bytes.data() + bytes.size(); at < end; mesh.triangles.push_back(t)) take(t.data(), 3);
+  mesh.triangles.resize(static_cast<std::size_t>(bytes.data() + bytes.size() - at) / sizeof(mesh.triangles[0]));
+  for (auto& t : mesh.triangles) take(t.data(), 3);
   return mesh;
 }
 }  // namespace
