@@ -14,8 +14,8 @@ struct LookAtSettings {
   Vec3 target{0, 0, 0};      ///< [m]   shown in the middle of the picture
   Vec3 up{0, 0, 1};          ///< [1]   drawn upwards
   Real fov = 35;             ///< [deg] vertical field of view
-  std::string follow = "";   ///< thing that the camera moves along with, without turning
-  std::string mount = "";    ///< body, or link of a robot, in whose frame eye, target and up are
+  std::string follow = {};   ///< thing that the camera moves along with, without turning
+  std::string mount = {};    ///< body, or link of a robot, in whose frame eye, target and up are
   template <class F>
   void fields(F&& f) {
     f("eye", eye, "m", Range::any(), "where the camera stands");
@@ -33,7 +33,7 @@ struct PinholeSettings {
   cosim::Calibration calibration;  ///< pictures are drawn as an ideal lens of these focal lengths and principal point makes them
   Vec3 position{0, 0, 0};          ///< [m]   camera in the world
   Vec3 rotation{0, 0, 0};          ///< [rad] rotation vector from camera to world axes
-  std::string mount = "";          ///< body, or link of a robot, whose frame stands for the world in position and rotation
+  std::string mount = {};          ///< body, or link of a robot, whose frame stands for the world in position and rotation
   std::string name = "camera";     ///< in an episode that is recorded
   template <class F>
   void fields(F&& f) {

@@ -15,6 +15,7 @@ void add_run(Hash& hash, const LoadedWorld& loaded, const State& start, Backend 
   for (const cosim::RobotPart& part : robots.robots) {
     hash.add(robot::describe(*part.model));
     for (const auto& [a, b] : part.model->may_overlap) hash.add(fmt::format("{} {}\n", a, b));
+    for (const cosim::RobotMotion& motion : part.motions) hash.add_file(motion.file);
   }
 }
 

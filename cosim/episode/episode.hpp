@@ -59,7 +59,7 @@ struct LandmarkTrack {
 /// One recording of a robot at work. README.md says what each part means.
 struct Episode {
   std::string name;
-  std::string origin = "";  ///< who recorded it, or the file that it was imported from
+  std::string origin = {};  ///< who recorded it, or the file that it was imported from
   std::vector<MotionStream> streams = {};
   std::vector<EpisodeCamera> cameras = {};
   std::vector<LandmarkTrack> landmarks = {};

@@ -10,7 +10,7 @@ namespace cosim {
 struct TableJoint {
   std::string name;
   Unit unit = Unit::rad;
-  std::string measured = "", commanded = "";
+  std::string measured = {}, commanded = {};
 };
 /// Rows of comma-separated numbers under a header of plain names; lines that start with # and other columns are skipped.
 /// @param time  name of the column of times [s]

@@ -29,7 +29,7 @@ struct DrivenJoint {
   Real scale = 1;   ///< [1], of a share [rad or m]
   Real offset = 0;  ///< [rad or m]
   Follow follow = Follow::measured;
-  std::string where = "";  ///< "file:line"
+  std::string where = {};  ///< "file:line"
 };
 
 /// Photographs that the camera of a replay took, at equal intervals.

@@ -1,4 +1,5 @@
 #pragma once
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -35,8 +36,9 @@ struct ExchangeParams {
 struct RobotMotion {
   std::function<robot::JointTrajectory(const robot::VecX& q)> plan;  ///< from what the joints [nj] are told then; its time counts from 0
   tape::Moment start = 0;
-  double duration = 0;  ///< [s]
-  int until = -1;       ///< event at which it stops before its time; -1: none
+  double duration = 0;              ///< [s]
+  int until = -1;                   ///< event at which it stops before its time; -1: none
+  std::filesystem::path file = {};  ///< that its numbers come from, or empty
 };
 
 /// A robot or a prop of a scene.

@@ -51,10 +51,13 @@ std::vector<Eigen::Index> find_joints(const Reader& section, const std::string& 
   return found;
 }
 
-robot::HandPostures load_postures(const Reader& asked_by, const std::filesystem::path& scene, const std::string& name) {
+std::filesystem::path find_postures(const Reader& asked_by, const std::filesystem::path& scene, const std::string& name) {
   const std::filesystem::path found = find_file(scene, "robots", name);
   if (found.empty()) asked_by.fail("no file " + name + " beside the scene, above it, or in data/robots");
-  return at_place(asked_by, [&] { return robot::read_postures(found); });
+  return found;
+}
+robot::HandPostures load_postures(const Reader& asked_by, const std::filesystem::path& file) {
+  return at_place(asked_by, [&] { return robot::read_postures(file); });
 }
 std::vector<Eigen::Index> joints_of(const robot::HandPostures& postures, const std::string& prefix, const Reader& asked_by,
                                     const robot::RobotModel& model) {
@@ -89,7 +92,7 @@ robot::VecX per_joint(const Reader& section, const robot::RobotModel& model, con
 robot::VecX posed(const Reader& postures, const std::filesystem::path& scene, const robot::RobotModel& model) {
   robot::VecX q = robot::VecX::Zero(static_cast<Eigen::Index>(model.joints.size()));
   if (!postures) return q;
-  const robot::HandPostures known = load_postures(postures, scene, "hand_postures.yaml");
+  const robot::HandPostures known = load_postures(postures, find_postures(postures, scene, "hand_postures.yaml"));
   for (const std::string& prefix : postures.keys()) {
     const robot::VecX angles = at_place(postures[prefix], [&] { return known.angles(model, prefix, postures[prefix].text()); });
     q(joints_of(known, prefix, postures[prefix], model)) = angles;
@@ -181,6 +184,10 @@ RobotPart read_robot(const Reader& section, const std::string& name, const Scene
 
 using Plan = std::function<robot::JointTrajectory(const robot::VecX&)>;
 using Model = std::shared_ptr<const robot::RobotModel>;
+struct FileAndPlan {
+  std::filesystem::path file;  ///< that the numbers come from, or empty
+  Plan plan;
+};
 
 Plan to_joints(const Reader& entry, const Model& model) {
   const Reader section = entry["joints"];
@@ -204,13 +211,14 @@ Plan to_joints(const Reader& entry, const Model& model) {
   };
 }
 
-Plan to_posture(const Reader& entry, const std::filesystem::path& scene, const Model& model) {
-  const Reader from = entry["postures"];
-  const robot::HandPostures postures = load_postures(from ? from : entry, scene, from.text_or("hand_postures.yaml"));
+FileAndPlan to_posture(const Reader& entry, const std::filesystem::path& scene, const Model& model) {
+  const Reader from = entry["postures"], &asked_by = from ? from : entry;
+  const std::filesystem::path file = find_postures(asked_by, scene, from.text_or("hand_postures.yaml"));
+  const robot::HandPostures postures = load_postures(asked_by, file);
   const std::string prefix = entry["prefix"].text_or(""), posture = entry["posture"].text();
   const Real duration = entry["duration"].number_or(0.5, Range::above(0, kForever), "s");
   const std::vector<Eigen::Index> at = joints_of(postures, prefix, entry["posture"], *model);
-  return [=](const robot::VecX& q) { return postures.move(*model, prefix, q(at), posture, duration); };
+  return {file, [=](const robot::VecX& q) { return postures.move(*model, prefix, q(at), posture, duration); }};
 }
 
 Plan to_frame(const Reader& entry, const Model& model, const robot::Pose& X_WB) {
@@ -234,32 +242,31 @@ Plan to_frame(const Reader& entry, const Model& model, const robot::Pose& X_WB) 
 }
 
 /// Of the joints that the file names; they must be where it starts.
-Plan along_file(const Reader& entry, const std::filesystem::path& scene, const Model& model) {
+FileAndPlan along_file(const Reader& entry, const std::filesystem::path& scene, const Model& model) {
   constexpr Real kNear = 0.1;  // [rad or m] from where a joint is told to be to where the file starts
   const Reader trajectory = entry["trajectory"];
   if (!trajectory) entry.fail("must hold one of joints, posture, frame, trajectory");
-  const auto way = at_place(trajectory, [&] {
-    const std::filesystem::path file = scene.parent_path() / trajectory.text();
-    return robot::read_trajectory(file, *model, robot::joints_in_header(file));
-  });
+  const std::filesystem::path file = scene.parent_path() / trajectory.text();
+  const auto way = at_place(trajectory, [&] { return robot::read_trajectory(file, *model, robot::joints_in_header(file)); });
   std::vector<Eigen::Index> at;
   for (const std::string& name : way.joints) {
     at.push_back(model->find_joint(name));
     if (model->joints[static_cast<std::size_t>(at.back())].mimic) trajectory.fail("joint " + name + " follows another: it has no drive");
   }
-  return [=](const robot::VecX& q) {
-    for (std::size_t k = 0; k < at.size(); ++k)
-      if (const Real from = q[at[k]], to = way.knots[0][static_cast<Eigen::Index>(k)]; std::fabs(to - from) > kNear)
-        throw robot::InputError("joint " + way.joints[k] + " starts at " + tape::to_text(to) + " in the file, and is told to be at " +
-                                tape::to_text(from) + " (allowed: up to " + tape::to_text(kNear) + " from it): move it there before");
-    return way;
-  };
+  return {file, [=](const robot::VecX& q) {
+            for (std::size_t k = 0; k < at.size(); ++k)
+              if (const Real from = q[at[k]], to = way.knots[0][static_cast<Eigen::Index>(k)]; std::fabs(to - from) > kNear)
+                throw robot::InputError("joint " + way.joints[k] + " starts at " + tape::to_text(to) +
+                                        " in the file, and is told to be at " + tape::to_text(from) + " (allowed: up to " +
+                                        tape::to_text(kNear) + " from it): move it there before");
+            return way;
+          }};
 }
 
-Plan read_plan(const Reader& entry, const std::filesystem::path& scene, const RobotPart& part) {
-  if (entry["joints"]) return to_joints(entry, part.model);
+FileAndPlan read_plan(const Reader& entry, const std::filesystem::path& scene, const RobotPart& part) {
+  if (entry["joints"]) return {{}, to_joints(entry, part.model)};
   if (entry["posture"]) return to_posture(entry, scene, part.model);
-  if (entry["frame"]) return to_frame(entry, part.model, part.params.X_WB);
+  if (entry["frame"]) return {{}, to_frame(entry, part.model, part.params.X_WB)};
   return along_file(entry, scene, part.model);
 }
 }  // namespace
@@ -288,21 +295,21 @@ Lasting add_robot_motion(const Reader& entry, const SceneFile& file, const tape:
     if (const Real last = part.motions.back().start.at(events); expected < last)
       name.fail("starts at " + tape::to_text(expected) + " s, before the motion ahead of it in the script starts at " +
                 tape::to_text(last) + " s");
-  const Plan plan = read_plan(entry, file.path(), part);
+  const auto [source, plan] = read_plan(entry, file.path(), part);
   const robot::VecX q = RobotScript(part, events).told_at(expected);
   const robot::JointTrajectory planned = at_place(entry, [&] { return plan(q); });
   if (robots.exchange.schedule != Schedule::posed)
     for (const std::string& joint : planned.joints)
       if (!has_drive(part, part.model->find_joint(joint)))
         entry.fail("joint " + joint + " has no drive that would follow (drives: kp and kd of the robot)");
-  const auto with_place = [plan, where = entry.where()](const robot::VecX& from) {
+  const auto with_place = [plan = plan, where = entry.where()](const robot::VecX& from) {
     try {
       return plan(from);
     } catch (const robot::InputError& e) {
       throw tape::InputError(where + ": " + e.what());
     }
   };
-  part.motions.push_back({with_place, start, planned.end() - planned.start()});
+  part.motions.push_back({with_place, start, planned.end() - planned.start(), -1, source});
   return {part.motions.back().duration, &part.motions.back().until};
 }
 }  // namespace cosim

@@ -42,7 +42,7 @@ bool add(const aiMesh& part, const Mat3& to_link, TriangleMesh& mesh) {
 /// A mesh, or why there is none.
 struct Imported {
   TriangleMesh mesh;
-  std::string refusal = "";
+  std::string refusal = {};
 };
 Imported import_mesh(const std::filesystem::path& file, const Vec3& scale, bool honour_up_axis) {
   const std::string kind = extension(file);

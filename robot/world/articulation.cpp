@@ -219,7 +219,7 @@ MatX Articulation::mass_matrix() const {
 
 MatX Articulation::to_bullet_velocity() const {
   MatX B = MatX::Zero(6 + joints(), dof());
-  B.bottomRightCorner(joints(), joints()).setIdentity();
+  if (joints() > 0) B.bottomRightCorner(joints(), joints()).setIdentity();
   if (!fixed_base_) {
     B.block<3, 3>(0, 3).setIdentity();
     B.block<3, 3>(3, 0).setIdentity();

@@ -154,7 +154,7 @@ VecX World::acceleration(int robot, const VecX& tau) const {
   DrivenRobot& r = impl_->at(robot);
   std::vector<Real> before;
   r.body().save(before);  // Bullet's algorithm reads the velocity from the body
-  const VecX a = r.body().acceleration(r.body().v(), tau, impl_->params.gravity);
+  VecX a = r.body().acceleration(r.body().v(), tau, impl_->params.gravity);
   const Real* n = before.data();
   r.body().restore(n);
   return a;

@@ -53,8 +53,9 @@ TAPE_HD MatN<15, 15> AxleTorque::hessian(const StateView& s, int i, HessianMode 
   const Turn turn(elements[i], s.x);
   const VecN<15> J = turn.slope();
   const Real y = std::fabs(slip(s, i)), stiffness = law(s).secant(y) - (s.overshot ? 0 : law(s).bend(y));
-  const MatN<15, 15> h = elements[i].torque * stiffness * J * J.transpose();
+  MatN<15, 15> h = elements[i].torque * stiffness * J * J.transpose();
   if (mode == HessianMode::projected || s.overshot) return h;
-  return h - torque(s, i) * turn.curvature();
+  h -= torque(s, i) * turn.curvature();
+  return h;
 }
 }  // namespace tape

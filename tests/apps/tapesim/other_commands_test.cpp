@@ -132,6 +132,22 @@ TEST_F(StudyCommand, AgainstAClosedFormPrintsATableAndLeavesCsvAndPlots) {
   }
   EXPECT_THAT(outcome.out, HasSubstr("*"));
 }
+TEST_F(StudyCommand, AFileThatAScriptNamesDecidesARunToo) {
+  folder.file("small.yaml", std::string(kScene).replace(std::string(kScene).find("script:\n"), 8,
+                                                        "robots:\n  arm: {urdf: arm7.urdf, position: [2, 0, 0], drives: {kp: 100, kd: 5}}\n"
+                                                        "script:\n  - {robot: arm, trajectory: way.csv}\n"));
+  const std::string study =
+      folder.file("study.yaml", "study: way\nscene: small.yaml\ngrid: {strip.cells_across: [1, 2]}\nagainst: {finest: true}\n");
+  const auto seconds = [&](const std::string& to) {
+    folder.file("way.csv", "time_s, arm_joint1 [rad]\n0, 0\n0.1, " + to + "\n");
+    const Outcome outcome = tapesim({"study", study, "--out", (folder / "out").string()});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return read(folder / "out" / "study.csv");
+  };
+  const std::string first = seconds("0.01");
+  EXPECT_EQ(seconds("0.01"), first) << "to the microsecond: nothing was run again";
+  EXPECT_NE(seconds("0.02"), first);
+}
 TEST_F(StudyCommand, AgainstTheFinestRunMeasuresStatesOnDifferentMeshes) {
   const std::string study = folder.file("study.yaml", std::string(kStudy) + "against: {finest: true}\nmeasure: state\n");
   const Outcome outcome = tapesim({"study", study, "--out", (folder / "out").string(), "--set", "effects.gravity=on"});

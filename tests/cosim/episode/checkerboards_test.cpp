@@ -14,6 +14,8 @@ namespace fs = std::filesystem;
 namespace {
 const fs::path kFolder = robot::test::real_data() / "opencv_calib";
 constexpr int kColumns = 9, kRows = 6;
+int row(int corner) { return corner / kColumns; }
+int column(int corner) { return corner % kColumns; }
 
 /// Corners [px] of the photographed board, to a fraction of a pixel, row by row.
 std::vector<cv::Point2f> corners(const fs::path& photograph) {
@@ -44,7 +46,7 @@ TEST(Checkerboards, ReprojectionErrorsOfThePhotographsAreThePublishedOnesToFourD
     const Pose X_CB{rotation_exp(Vec3(&poses[6 * view])), Vec3(&poses[6 * view + 3])};
     Real sum = 0;
     for (int i = 0; i < kColumns * kRows; ++i) {
-      const std::optional<Vec2> pixel = camera.project(apply(X_CB, square * Vec3(i % kColumns, i / kColumns, 0)));
+      const std::optional<Vec2> pixel = camera.project(apply(X_CB, square * Vec3(column(i), row(i), 0)));
       ASSERT_TRUE(pixel);
       const cv::Point2f& corner = seen[static_cast<std::size_t>(i)];
       sum += (*pixel - Vec2(corner.x, corner.y)).squaredNorm();
@@ -60,7 +62,7 @@ TEST(Checkerboards, OurProjectionIsThatOfOpenCvToAMillionthOfAPixel) {
   const Calibration camera{.fx = 535.9, .fy = 541.3, .cx = 342.3, .cy = 235.6, .lens = {-0.266, -0.0386, 0.00178, -0.00028, 0.2384}};
   const Vec3 rotation(0.41, 0.65, -1.34), position(-0.06, 0.08, 0.35);
   std::vector<cv::Point3d> board;
-  for (int i = 0; i < kColumns * kRows; ++i) board.emplace_back(0.025 * (i % kColumns), 0.025 * (i / kColumns), 0.001 * i);
+  for (int i = 0; i < kColumns * kRows; ++i) board.emplace_back(0.025 * column(i), 0.025 * row(i), 0.001 * i);
   std::vector<cv::Point2d> expected;
   const cv::Matx33d matrix(camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1);
   const cv::Vec<double, 5> lens(camera.lens.k1, camera.lens.k2, camera.lens.p1, camera.lens.p2, camera.lens.k3);

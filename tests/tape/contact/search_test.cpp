@@ -324,6 +324,7 @@ TEST(ContactSearch, ConstantsOfAPairComeFromItsTwoPrimitives) {
   test::add_object(s, {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}, {{0, 1, 2}}, 0.01, nullptr, 2);
   test::add_object(s, {{0.2, 0.05, 0.2}, {0.8, 0.05, 0.2}, {0.2, 0.05, 0.6}}, {{0, 1, 2}}, 0.02, nullptr, 1);
   s.mesh.materials = 3;
+  s.mesh.kappa = {10, 11, 12, 11, 21, 22, 12, 22, 32};  // [Pa]
   s.mesh.vertices[3].xi = 0.015;
   Scene scene(s);
   ContactSearch search(scene.mesh(), 0.1, 0.1);
@@ -332,6 +333,7 @@ TEST(ContactSearch, ConstantsOfAPairComeFromItsTwoPrimitives) {
   for (const ContactPair& p : search.candidates()) {
     ++kinds[static_cast<int>(p.kind)];
     EXPECT_EQ(p.interface, p.v[0] < 3 ? 2 * 3 + 1 : 1 * 3 + 2) << "the material of the first primitive, then that of the second";
+    EXPECT_EQ(p.kappa, 22);
     const bool small_vertex = p.v[0] >= 3;
     if (p.kind == PairKind::vertex_triangle) {
       EXPECT_DOUBLE_EQ(p.xi, small_vertex ? (p.v[0] == 3 ? 0.015 : 0.02) + 0.01 : 0.01 + 0.02);
