@@ -60,7 +60,7 @@ EpisodeRecorder::EpisodeRecorder(const fs::path& file, const SceneArguments& sce
       pictures_(params_.picture_rate, start.time),
       seed_(static_cast<std::uint64_t>(loaded.world.setup.scene.seed)) {
   episode_.name = file_.filename().string();
-  cosim::TextFile{fs::path(file_.string() + ".h5")};  // whether it can be written, before the work
+  cosim::require_writable(file_.string() + ".h5");  // before the work
   episode_.origin = origin_of(scene);
   const auto& robots = loaded.input.run.robots.robots;
   for (std::size_t r = 0; r < robots.size(); ++r) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "apps/tapesim/recorded_run.hpp"
 #include "apps/tapesim/scene_input.hpp"
 
 namespace tape::tapesim {
@@ -57,7 +58,7 @@ std::vector<Line> stages(const World& world, const cosim::RobotScene& robots) {
 int explain(const SceneArguments& arguments, const std::string& backend_name) {
   const LoadedWorld loaded = load_world(arguments, Rolls::as_known);
   if (backend_name == "cuda" && !cuda_available()) throw InputError("--backend cuda: no CUDA device answers, or this build has no CUDA");
-  const std::string backend = backend_name == "cpu" || !cuda_available() ? "cpu" : "cuda";
+  const std::string backend = runs_on_cuda(backend_of(backend_name), loaded.world) ? "cuda" : "cpu";
   std::vector<Line> lines;
   for (const PlanLine& line : loaded.world.plan) lines.push_back({line.name, line.on, reason(loaded.input.run, line)});
   for (Line& line : stages(loaded.world, loaded.input.run.robots)) lines.push_back(std::move(line));

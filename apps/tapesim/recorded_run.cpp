@@ -10,7 +10,7 @@
 namespace tape::tapesim {
 void add_run(Hash& hash, const LoadedWorld& loaded, const State& start, Backend backend) {
   const cosim::RobotScene& robots = loaded.input.run.robots;
-  hash.add(fmt::format("{} {} {}\n", program_hash().text(), threads(), runs_on_cuda(backend)));
+  hash.add(fmt::format("{} {} {}\n", program_hash().text(), threads(), runs_on_cuda(backend, loaded.world)));
   hash.add(report::settings_json(loaded.world.setup, robots).dump() + world_hash(loaded.world) + start.hash());
   for (const cosim::RobotPart& part : robots.robots) {
     hash.add(robot::describe(*part.model));
@@ -25,8 +25,6 @@ Backend backend_of(const std::string& name) {
     if (names[i] == name) return static_cast<Backend>(i);
   throw SettingsError("--backend", name, "auto, cpu or cuda");
 }
-
-bool runs_on_cuda(Backend backend) { return backend == Backend::cuda || (backend == Backend::automatic && cuda_available()); }
 
 cosim::RunLog simulate_into(RunFolder& folder, LoadedWorld& loaded, Stepper& stepper, State& state, int steps, const OnStep& on_step) {
   const int first = state.step;

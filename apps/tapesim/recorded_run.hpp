@@ -11,7 +11,6 @@ void add_run(Hash& hash, const LoadedWorld& loaded, const State& start, Backend 
 
 /// By a name that the command line has checked.
 Backend backend_of(const std::string& name);
-bool runs_on_cuda(Backend backend);
 
 using OnStep = std::function<void(const State&, const cosim::StepRow&)>;
 /// Advances a state to the end of the scene; steps and recorded states go into the folder.

@@ -204,7 +204,8 @@ bool simulate_replay(LoadedReplay& replay, const std::filesystem::path& path, co
       run.failure = e.what();
     }
   }
-  commit_run(folder, state, loaded, {replay.scene.scene, TAPE_VERSION, runs_on_cuda(backend) ? "cuda" : "cpu", threads(), 0}, summary);
+  commit_run(folder, state, loaded,
+             {replay.scene.scene, TAPE_VERSION, runs_on_cuda(backend, replay.loaded.world) ? "cuda" : "cpu", threads(), 0}, summary);
   if (recorder && run.failure.empty() && !log.interrupted) recorder->commit();
   return !log.interrupted;
 }

@@ -123,7 +123,8 @@ int run(const RunArguments& arguments) {
     });
   }();
   const cosim::RunSummary summary = cosim::summarize(loaded.world, log, loaded.input.run.figures);
-  const report::Provenance provenance{arguments.scene.scene, TAPE_VERSION, runs_on_cuda(backend) ? "cuda" : "cpu", threads(), first_step};
+  const report::Provenance provenance{arguments.scene.scene, TAPE_VERSION, runs_on_cuda(backend, loaded.world) ? "cuda" : "cpu", threads(),
+                                      first_step};
   report::Json json = commit_run(folder, state, loaded, provenance, summary);
   if (recorder && log.failure.empty() && !log.interrupted) recorder->commit();
   print_summary(summary, folder);

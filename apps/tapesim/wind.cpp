@@ -54,7 +54,7 @@ cosim::RunInput read(const WindArguments& a) {
 int wind(const WindArguments& arguments) {
   cosim::RunInput input = read(arguments);
   if (!cosim::holds_together(input.setup, 0)) throw InputError("the tape of this roll does not adhere to itself: it would spring open");
-  cosim::TextFile{arguments.out};  // whether it can be written, before the work
+  cosim::require_writable(arguments.out);  // before the work
   const cosim::SettledRoll roll = cosim::settle_roll(cosim::roll_alone(input.setup, 0), watched_settle());
   cosim::save_roll(arguments.out, roll);
   fmt::print("{}: at rest after {} steps, {:.2g} m/s\n", arguments.out, roll.report.steps, roll.report.speed);

@@ -45,7 +45,7 @@ class Info {
       Json names = features[feature].at("names");
       if (names.is_object() && names.size() == 1) names = names.items().begin().value();
       if (names.is_array() && names.size() == 1 && names[0].is_array()) names = names[0];
-      const auto all = names.get<std::vector<std::string>>();
+      auto all = names.get<std::vector<std::string>>();
       if (all.size() == features[feature].at("shape").at(0).get<std::size_t>()) return all;
     } catch (const Json::exception&) {
     }

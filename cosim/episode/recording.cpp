@@ -85,7 +85,7 @@ class Importer {
 }  // namespace
 
 fs::path named_file(const Reader& name, const fs::path& from, const std::string& subfolder) {
-  const fs::path found = find_file(from, subfolder, name.text());
+  fs::path found = find_file(from, subfolder, name.text());
   if (found.empty()) name.fail("there is no such file");
   return found;
 }

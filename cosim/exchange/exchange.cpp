@@ -32,7 +32,7 @@ VectorXd twist(const tape::Pose& from, const robot::Pose& to) {
 
 /// How far a robot came, by its velocities' coordinates.
 VectorXd change(const RobotState& from, const RobotState& to, bool free_base) {
-  const VectorXd joints = to.q - from.q;
+  VectorXd joints = to.q - from.q;
   if (!free_base) return joints;
   VectorXd out(6 + joints.size());
   out << twist({from.X_WB.linear(), from.X_WB.translation()}, to.X_WB), joints;

@@ -90,14 +90,15 @@ FigureValues link_force(const World& world, const RunLog& log) {
     for (std::size_t l = 0; l < links.size(); ++l) {
       Vec3 sum = Vec3::Zero();
       Real most = 0;
+      int late = 0;
       for (std::size_t r = 0; r < log.rows.size(); ++r) {
         const LinkReport& link = log.rows[r].report.articulations[a].links[l];
         const Vec3 force = link.normal.force + link.friction.force + link.adhesion.force + link.hold.force;
         most = std::max(most, force.norm());
-        if (2 * r >= log.rows.size()) sum += force;
+        if (2 * r >= log.rows.size()) sum += force, ++late;
       }
       if (most == 0) continue;
-      values.emplace_back("link_force_mean_N." + links[l], sum.norm() / static_cast<Real>(log.rows.size() - log.rows.size() / 2));
+      values.emplace_back("link_force_mean_N." + links[l], sum.norm() / late);
       values.emplace_back("link_force_max_N." + links[l], most);
     }
   }

@@ -61,6 +61,8 @@ void write_text(const std::filesystem::path& name, std::string_view text) {
   file.commit();
 }
 
+void require_writable(const std::filesystem::path& name) { const TextFile empty(name); }
+
 void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);

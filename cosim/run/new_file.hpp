@@ -43,6 +43,9 @@ class TextFile {
 /// The whole text at once, whole or not at all.
 void write_text(const std::filesystem::path& name, std::string_view text);
 
+/// Writes nothing: to know before long work that its file can be written.  @throws InputError with the reason if it cannot
+void require_writable(const std::filesystem::path& name);
+
 /// Makes a folder and those above it.  @throws InputError with the reason if it cannot be made or written in
 void make_folder(const std::filesystem::path& folder);
 }  // namespace cosim

@@ -52,7 +52,7 @@ std::vector<Eigen::Index> find_joints(const Reader& section, const std::string& 
 }
 
 std::filesystem::path find_postures(const Reader& asked_by, const std::filesystem::path& scene, const std::string& name) {
-  const std::filesystem::path found = find_file(scene, "robots", name);
+  std::filesystem::path found = find_file(scene, "robots", name);
   if (found.empty()) asked_by.fail("no file " + name + " beside the scene, above it, or in data/robots");
   return found;
 }
@@ -295,21 +295,21 @@ Lasting add_robot_motion(const Reader& entry, const SceneFile& file, const tape:
     if (const Real last = part.motions.back().start.at(events); expected < last)
       name.fail("starts at " + tape::to_text(expected) + " s, before the motion ahead of it in the script starts at " +
                 tape::to_text(last) + " s");
-  const auto [source, plan] = read_plan(entry, file.path(), part);
+  const FileAndPlan read = read_plan(entry, file.path(), part);
   const robot::VecX q = RobotScript(part, events).told_at(expected);
-  const robot::JointTrajectory planned = at_place(entry, [&] { return plan(q); });
+  const robot::JointTrajectory planned = at_place(entry, [&] { return read.plan(q); });
   if (robots.exchange.schedule != Schedule::posed)
     for (const std::string& joint : planned.joints)
       if (!has_drive(part, part.model->find_joint(joint)))
         entry.fail("joint " + joint + " has no drive that would follow (drives: kp and kd of the robot)");
-  const auto with_place = [plan = plan, where = entry.where()](const robot::VecX& from) {
+  const auto with_place = [plan = read.plan, where = entry.where()](const robot::VecX& from) {
     try {
       return plan(from);
     } catch (const robot::InputError& e) {
       throw tape::InputError(where + ": " + e.what());
     }
   };
-  part.motions.push_back({with_place, start, planned.end() - planned.start(), -1, source});
+  part.motions.push_back({with_place, start, planned.end() - planned.start(), -1, read.file});
   return {part.motions.back().duration, &part.motions.back().until};
 }
 }  // namespace cosim

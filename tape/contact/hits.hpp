@@ -1,5 +1,8 @@
 #pragma once
+#include <climits>
+
 #include "tape/contact/pair.hpp"
+#include "tape/core/functors.hpp"
 #include "tape/core/side.hpp"
 
 /// From queries to pairs: count, scan, emit. The pairs of each query stand together, sorted by the other primitive's id.
@@ -46,6 +49,11 @@ TAPE_HD inline void sort_many(int* a, int n) {  // heap sort
   }
 }
 
+struct Count {
+  Span<const int> of;
+  TAPE_HD long long operator()(int i) const { return of[i]; }
+};
+
 template <class Query>
 struct EmitPairs {
   Query query;
@@ -70,12 +78,14 @@ struct EmitPairs {
 /// Hits of one kind of query. A query has visit(i, f), which calls f(other), and pair(i, other).
 class Hits {
  public:
-  /// @return number of all hits
+  /// @return number of all hits; with more than INT_MAX there is nothing to emit
   template <class Query>
-  int count(int queries, const Query& query) {
+  long long count(int queries, const Query& query) {
     first_.resize(queries), slots_.resize(queries * kSlots);
     parallel_for(queries, CountHits<Query>{query, slots_.span(), first_.span()});
-    return exclusive_scan(first_.span());
+    const long long all = reduce(queries, 0LL, Count{first_.span()}, Plus{});
+    if (all <= INT_MAX) exclusive_scan(first_.span());
+    return all;
   }
   /// @param pairs  as many as count() returned for the same query
   template <class Query>

@@ -167,8 +167,8 @@ void ContactSearch::query(const F& f) {
   const detail::VertexQuery vertices{nearness, trees(&Planted::triangles), seen.vertices.span()};
   const detail::SleeperQuery sleepers{nearness, asleep_trees_.vertices.view(), surface_.followers.triangles.span()};
   const detail::EdgeQuery edges{nearness, trees(&Planted::edges), seen.edges.span()};
-  const int of_vertices = vertex_hits_.count(vertices.list.size, vertices);
-  const int of_sleepers = sleeper_hits_.count(asleep_trees_.size > 0 ? sleepers.list.size : 0, sleepers);
+  const long long of_vertices = vertex_hits_.count(vertices.list.size, vertices);
+  const long long of_sleepers = sleeper_hits_.count(asleep_trees_.size > 0 ? sleepers.list.size : 0, sleepers);
   f(vertices, sleepers, edges, of_vertices, of_sleepers, edge_hits_.count(edges.list.size, edges));
 }
 
@@ -185,16 +185,18 @@ inline bool ContactSearch::within(const PathView& paths, Real margin, int most) 
 
 inline void ContactSearch::rebuild(const PathView& paths, Real margin) {
   look(paths, margin);
-  query([&](const auto& vertices, const auto& sleepers, const auto& edges, int of_vertices, int of_sleepers, int of_edges) {
-    report_.vertex_triangle = of_vertices + of_sleepers;
-    report_.edge_edge = of_edges;
-    Buffer<ContactPair>& all = bonded_.size() > 0 ? found_ : pairs_;
-    all.resize(report_.vertex_triangle + report_.edge_edge);
-    ContactPair* const pairs = all.span().data;
-    vertex_hits_.emit(vertices, Span<ContactPair>{pairs, of_vertices});
-    sleeper_hits_.emit(sleepers, Span<ContactPair>{pairs + of_vertices, of_sleepers});
-    edge_hits_.emit(edges, Span<ContactPair>{pairs + report_.vertex_triangle, report_.edge_edge});
-  });
+  query(
+      [&](const auto& vertices, const auto& sleepers, const auto& edges, long long of_vertices, long long of_sleepers, long long of_edges) {
+        TAPE_CHECK(of_vertices + of_sleepers + of_edges <= INT_MAX);
+        report_.vertex_triangle = static_cast<int>(of_vertices + of_sleepers);
+        report_.edge_edge = static_cast<int>(of_edges);
+        Buffer<ContactPair>& all = bonded_.size() > 0 ? found_ : pairs_;
+        all.resize(report_.vertex_triangle + report_.edge_edge);
+        ContactPair* const pairs = all.span().data;
+        vertex_hits_.emit(vertices, Span<ContactPair>{pairs, static_cast<int>(of_vertices)});
+        sleeper_hits_.emit(sleepers, Span<ContactPair>{pairs + of_vertices, static_cast<int>(of_sleepers)});
+        edge_hits_.emit(edges, Span<ContactPair>{pairs + report_.vertex_triangle, report_.edge_edge});
+      });
   if (bonded_.size() > 0) drop_bonded();
   join_components(surface_.view());
   built_ = true;

@@ -11,6 +11,15 @@
 namespace tape::TAPE_SIDE {
 inline constexpr int kMaxLevels = 8;  // 8^8 boxes, more than a float can number
 
+/// Index of the lowest bit that is set; there must be one.
+TAPE_HD inline int lowest_bit(std::uint64_t bits) {
+#ifdef __CUDA_ARCH__
+  return __ffsll(static_cast<long long>(bits)) - 1;
+#else
+  return std::countr_zero(bits);
+#endif
+}
+
 struct TreeView {
   Span<const LanesOf8> nodes;
   Span<const int> id;     ///< [8 nodes of level 0] of the box at each place
@@ -27,10 +36,10 @@ struct TreeView {
       if (level > 0) {
         open |= std::uint64_t{met} << (8 * level);
       } else {
-        for (; met != 0; met &= met - 1) f(id[8 * at + std::countr_zero(met)]);
+        for (; met != 0; met &= met - 1) f(id[8 * at + lowest_bit(met)]);
       }
       if (open == 0) return;
-      const int next = std::countr_zero(open), up = next / 8;
+      const int next = lowest_bit(open), up = next / 8;
       open &= open - 1;
       at = 8 * (at >> (3 * (up - level))) + next % 8;
       level = up - 1;

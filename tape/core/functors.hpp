@@ -9,16 +9,17 @@ struct Plus {
     return a + b;
   }
 };
+/// What is no number stays, in whatever order.
 struct Smaller {
   template <class T>
   TAPE_HD T operator()(const T& a, const T& b) const {
-    return b < a ? b : a;
+    return a < b || a != a ? a : b;
   }
 };
 struct Larger {
   template <class T>
   TAPE_HD T operator()(const T& a, const T& b) const {
-    return a < b ? b : a;
+    return a > b || a != a ? a : b;
   }
 };
 struct Both {

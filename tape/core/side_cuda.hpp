@@ -5,7 +5,9 @@
 #include <thrust/sort.h>
 
 #include <algorithm>
+#include <climits>
 #include <cstdint>
+#include <new>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,13 +16,19 @@
 #include "tape/core/types.hpp"
 
 namespace tape::on_cuda {
+namespace detail {
+inline __global__ void nothing() {}
+}  // namespace detail
+/// Whether there is a device, of an architecture that this program was compiled for.
 inline bool available() {
   int n = 0;
-  return cudaGetDeviceCount(&n) == cudaSuccess && n > 0;
+  cudaFuncAttributes compiled;
+  return cudaGetDeviceCount(&n) == cudaSuccess && n > 0 && cudaFuncGetAttributes(&compiled, detail::nothing) == cudaSuccess;
 }
 /// Whether Span of this side points to memory of the host.
 inline constexpr bool kHostMemory = false;
 inline void require(cudaError_t status) {
+  if (status == cudaErrorMemoryAllocation) throw std::bad_alloc();
   if (status != cudaSuccess) throw CheckFailed(std::string("CUDA: ") + cudaGetErrorString(status));
 }
 
@@ -40,9 +48,11 @@ class Buffer {
   int size() const { return size_; }
   void resize(int n) {
     if (n > capacity_) {
-      capacity_ = std::max(n, capacity_ + capacity_ / 2);
+      const int grown = static_cast<int>(std::min<long long>(std::max<long long>(n, capacity_ + capacity_ / 2LL), INT_MAX));
+      capacity_ = 0;
       require(cudaFree(std::exchange(data_, nullptr)));
-      require(cudaMalloc(reinterpret_cast<void**>(&data_), sizeof(T) * static_cast<std::size_t>(capacity_)));
+      require(cudaMalloc(reinterpret_cast<void**>(&data_), sizeof(T) * static_cast<std::size_t>(grown)));
+      capacity_ = grown;
     }
     size_ = n;
   }
@@ -111,6 +121,7 @@ T reduce(int n, T identity, Kernel k, Combine combine) {
   partial.resize(static_cast<int>(detail::blocks(n)));
   detail::reduce_blocks<<<detail::blocks(n), detail::kThreads>>>(n, identity, k, combine, partial.span().data);
   detail::combine_partials<<<1, 1>>>(partial.size(), identity, combine, partial.span().data);
+  require(cudaGetLastError());
   T sum = identity;
   require(cudaMemcpy(&sum, partial.span().data, sizeof(T), cudaMemcpyDeviceToHost));
   return sum;

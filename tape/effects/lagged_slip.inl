@@ -57,7 +57,8 @@ TAPE_HD LaggedSlip LaggedSlip::at(const ContactPair& pair, const PairState& p, S
   out.T.col(0) = t;
   out.T.col(1) = n.cross(t);
   const Way way(out, x);
-  out.slip_of = out.T.transpose() * way.basis().inverse().transpose();
+  const Mat3 inverse = way.basis().inverse();  // within a product it would be a host function
+  out.slip_of = out.T.transpose() * inverse.transpose();
   out.start = way.along();
   out.before.setZero();
   return out;

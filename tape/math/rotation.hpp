@@ -33,8 +33,10 @@ TAPE_HD inline Vec3 rotate(const Vec3& w, const Vec3& r) {
 }
 /// Rotation vector w [rad], |w| <= pi, with exp(skew(w)) = R.
 inline Vec3 rotation_log(const Mat3& R) {
-  const Eigen::AngleAxis<Real> aa{R};
-  return aa.angle() * aa.axis();
+  const Eigen::Quaternion<Real> q{R};
+  const Real n = q.vec().norm();  // |sin(angle/2)|
+  if (n == 0) return Vec3::Zero();
+  return 2 * std::atan2(n, std::fabs(q.w())) * (q.vec() / (q.w() < 0 ? -n : n));
 }
 /// Largest distance [m] of a point on an arc of `angle` [rad] and radius r [m] from the arc's chord: r (1 - cos(angle/2)),
 /// and 2 r at most, beyond a full turn.

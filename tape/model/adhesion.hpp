@@ -61,7 +61,7 @@ struct AreaCohesion {
     f("rest", rest, "1", Range::above(0, 1), "gap from which the opening counts, in units of dhat");
     f("reach", reach, "1", Range::above(0, 1), "gap up to which area sticks, in units of dhat; up to `rest` it must be pressed together");
   }
-  Real final_opening() const { return 2 * toughness / strength; }  ///< [m]
+  TAPE_HD Real final_opening() const { return 2 * toughness / strength; }  ///< [m]
 };
 
 /// Releasable bonds of the paper, eq. 4: each replaces contact, friction and cohesion of a vertex-triangle pair.

@@ -58,9 +58,9 @@ struct FirstNonFiniteSlot {
   int count;
   TAPE_HD int operator()(int i) const {
     for (int k = gradient[i]; k < gradient[i + 1]; ++k)
-      if (!gradient_slots[k].allFinite()) return i;
+      if (!std::isfinite(gradient_slots[k].squaredNorm())) return i;
     for (int k = hessian[i]; k < hessian[i + 1]; ++k)
-      if (!hessian_slots[k].allFinite()) return i;
+      if (!std::isfinite(hessian_slots[k].squaredNorm())) return i;
     return count;
   }
 };
@@ -188,7 +188,7 @@ struct FillSlots {
     }
     for (int a = 0; a < r.blocks; ++a)  // the matrix stores its upper triangle
       for (int b = a + 1; b < r.blocks; ++b)
-        if (r.block[a] > r.block[b]) out[pair_slot(a, b, r.blocks)].transposeInPlace();
+        if (Mat3& m = out[pair_slot(a, b, r.blocks)]; r.block[a] > r.block[b]) m = Mat3(m.transpose());
   }
 
  private:

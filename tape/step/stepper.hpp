@@ -90,6 +90,9 @@ class Stepper {
 };
 
 bool cuda_available();
+/// Whether a stepper of this back end runs on CUDA: `automatic` does where a device answers, unless the scene asks for a linear solver that
+/// only the CPU has.
+bool runs_on_cuda(Backend backend, const World& world);
 /// @throws InputError if the back end is not there
 std::unique_ptr<Stepper> make_stepper(Backend backend, const World& world);
 }  // namespace tape

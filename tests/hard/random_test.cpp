@@ -110,8 +110,10 @@ TEST_P(LongRandomScenes, KeepTheirPromises) {
   const RandomScene scene(GetParam());
   Simulation simulation(scene.setup());
   simulation.run_to(0.4);
-  std::printf("random %3u: %4d steps  %5.1f Newton a step (max %4d)  smallest gap %9.2e m  %s\n", GetParam(), simulation.state().step,
-              simulation.newton_sum / std::max<Real>(1, simulation.state().step), simulation.newton_max, simulation.min_gap,
+  const NewtonParams& newton = scene.setup().newton;
+  std::printf("random %3u: %4d steps  %5.1f Newton a step (max %4d)  smallest gap %9.2e m  %s %s %.0e m/s  %s\n", GetParam(),
+              simulation.state().step, simulation.newton_sum / std::max<Real>(1, simulation.state().step), simulation.newton_max,
+              simulation.min_gap, to_text(newton.hessian).c_str(), to_text(newton.stop).c_str(), newton.velocity_tol,
               simulation.broken.empty() ? "ok" : "BROKEN");
   for (const std::string& what : simulation.broken) ADD_FAILURE() << what;
 }
