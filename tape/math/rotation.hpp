@@ -33,8 +33,8 @@ TAPE_HD inline Vec3 rotate(const Vec3& w, const Vec3& r) {
 }
 /// Rotation vector w [rad], |w| <= pi, with exp(skew(w)) = R.
 inline Vec3 rotation_log(const Mat3& R) {
-  const Eigen::Quaternion<Real> q{R};
-  const Real n = q.vec().norm();  // |sin(angle/2)|
+  const Eigen::Quaternion<Real> q{R};  // not AngleAxis: it calls a host function, which nvcc does not let pass in what kernels include
+  const Real n = q.vec().norm();       // |sin(angle/2)|
   if (n == 0) return Vec3::Zero();
   return 2 * std::atan2(n, std::fabs(q.w())) * (q.vec() / (q.w() < 0 ? -n : n));
 }
