@@ -47,8 +47,11 @@ struct Barrier {
   /// Matrix by (ea, eb) -> by the four vertices.
   TAPE_HD static inline MatN<12, 12> by_vertices(const Mat3& aa, const Mat3& ab, const Mat3& bb);
 
-  /// b'' grad d (grad d)^T; b is convex. The curvature of d itself has the factor b' <= 0: for two points it is negative and the
-  /// projection drops all of it, for the other features nearly all.
+  /// Whether the force is so large that the curvature of d matters, which has the factor b' <= 0: a pair that slides along itself and tilts
+  /// comes closer than its tangents foresee. Without that a pair this deep is driven deeper by each update, and CCD lets through
+  /// less each time. Elsewhere it makes rolls stiff: their layers do slide and tilt, as one.
+  TAPE_HD static inline bool deep(const PairState& p, const ContactPair& pair);
+  /// b'' grad d (grad d)^T; b is convex. Of the curvature of d itself only `deep` pairs have a part, that of for_each_saddle.
   TAPE_HD static inline MatN<12, 12> projected_hessian(const PairState& p, const Jet& b);
   /// In s = |ea x eb| the product is m(s) b(d): its 2x2 Hessian by (s, d) is clamped, and the curvature of s, which is that of
   /// the length of a vector along the cross product's change, stays. The clamp scales s as if |grad s| were |grad d|.

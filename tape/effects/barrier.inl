@@ -52,6 +52,7 @@ TAPE_HD bool Barrier::active(const StateView& s, int i) const {
   const PairState p = PairState::at(elements[i], s.x);
   return reaches(p, elements[i]) && p.fade.value > 0;
 }
+TAPE_HD bool Barrier::deep(const PairState& p, const ContactPair& pair) { return p.d - pair.xi < 0.1 * pair.dhat; }
 TAPE_HD bool Barrier::reaches(const PairState& p, const ContactPair& pair) { return BarrierLaw{1, pair.dhat}.reaches(p.d, pair.xi); }
 TAPE_HD Jet Barrier::barrier(const PairState& p, const ContactPair& pair) const {
   return BarrierLaw{pair.kappa, pair.dhat}.at(p.d, pair.xi, pair.weight);
@@ -90,6 +91,7 @@ TAPE_HD MatN<12, 12> Barrier::hessian(const StateView& s, int i, HessianMode mod
       h += share * exact_hessian(p, b);
     } else if (share > 0) {
       h += share * (p.fade.slope != 0 ? faded_projected_hessian(p, b) : projected_hessian(p, b));
+      if (deep(p, pair)) p.for_each_saddle([&](Real c, const VecN<12>& v) { h -= share * p.fade.value * b.slope * c * v * v.transpose(); });
     }
   });
   return h;
@@ -100,7 +102,10 @@ TAPE_HD bool Barrier::squares(const StateView& s, int i, const F& add) const {
   const PairState at = PairState::at(pair, s.x);
   if (at.fade.slope != 0) return false;
   for_each_feature(pair, at, [&](const PairState& p, Real share) {
-    if (share > 0) add(share * barrier(p, pair).curvature, p.gradient());
+    if (!(share > 0)) return;
+    const Jet b = barrier(p, pair);
+    add(share * b.curvature, p.gradient());
+    if (deep(p, pair)) p.for_each_saddle([&](Real c, const VecN<12>& v) { add(share * -b.slope * c, v); });
   });
   return true;
 }

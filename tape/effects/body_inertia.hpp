@@ -5,7 +5,9 @@ namespace tape {
 /// Sum of m/2 |x - x_target|^2 over a body's mass in closed form: with pose (R, t) and target pose (R', t'),
 ///   E = m/2 |t - t'|^2 + 1/2 tr((R - R') S (R - R')^T),   S = sum of m y y^T.
 /// By (translation, rotation w from the left, R <- exp(skew w) R), with M = R S R'^T:
-///   gradient (m (t - t'), axial(M)),   Hessian (m I, tr(M) I - (M + M^T)/2).
+///   gradient (m (t - t'), axial(M)),   Hessian (m I, J(M)),   J(M) = tr(M) I - (M + M^T)/2.
+/// Far from the target J(M) is no longer positive. The mean of the inertias at both poses, (J(R S R^T) + J(R' S R'^T))/2, is never less
+/// than J(M), as m |y - y'|^2 >= 0 for each point: `projected` has it there, so that a body that nothing touches still has a step.
 struct BodyQuadratic {
   Real mass;    ///< [kg] or a stiffness [N/m]
   Mat3 second;  ///< [kg m^2] or [N m]

@@ -1,4 +1,6 @@
 #pragma once
+#include <cmath>
+
 #include "tape/effects/body_inertia.hpp"
 #include "tape/math/psd.hpp"
 #include "tape/math/rotation.hpp"
@@ -15,11 +17,18 @@ TAPE_HD VecN<6> BodyQuadratic::gradient(const Pose& at, const Pose& target) cons
   return g;
 }
 TAPE_HD MatN<6, 6> BodyQuadratic::hessian(const Pose& at, const Pose& target, HessianMode mode) const {
-  const Mat3 M = at.rotation * second * target.rotation.transpose();
-  const Mat3 turn = M.trace() * Mat3::Identity() - 0.5 * (M + M.transpose());
+  constexpr Real kLeast = 0.1;  // share of the bound below which there is too little curvature to step by
+  const auto turning = [](const Mat3& M) { return Mat3(M.trace() * Mat3::Identity() - 0.5 * (M + M.transpose())); };
+  Mat3 turn = turning(at.rotation * second * target.rotation.transpose());
+  if (mode == HessianMode::projected) {
+    const Mat3 bound =
+        0.5 * turning(at.rotation * second * at.rotation.transpose() + target.rotation * second * target.rotation.transpose());
+    const SymmetricEigen<3> above = symmetric_eigen(turn - kLeast * bound);
+    if (std::fmin(above.value[0], std::fmin(above.value[1], above.value[2])) < 0) turn = bound;
+  }
   MatN<6, 6> h = MatN<6, 6>::Zero();
   h.topLeftCorner<3, 3>() = mass * Mat3::Identity();
-  h.bottomRightCorner<3, 3>() = mode == HessianMode::projected ? psd_part(turn) : turn;
+  h.bottomRightCorner<3, 3>() = turn;
   return h;
 }
 TAPE_HD Real BodyInertia::energy(const StateView& s, int i) const {

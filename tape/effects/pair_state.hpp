@@ -44,6 +44,43 @@ struct PairState {
     for (int k = 0; k < 4; ++k) g.segment<3>(3 * k) = closest.weight[k] * n;
     return g;
   }
+  /// Calls f(c, v) with the positive part, sum c v v^T [1/m], of minus the Hessian of d: what brings a pair that slides along itself and
+  /// tilts closer than its tangents foresee. With the slopes s_a of the weights by the free parameters and the tangents t_a, made
+  /// orthonormal,
+  ///   -hess d = sum_a (p_a q_a^T + q_a p_a^T + d p_a p_a^T) - sum_b q_b q_b^T / d,   p_a = s_a (x) n,  q = w (x) t,
+  /// where b counts the tangents without a parameter. All p and q are orthogonal if s_1 and s_2 are.
+  template <class F>
+  TAPE_HD void for_each_saddle(F&& f) const {
+    Vec3 t[2];
+    Eigen::Matrix<Real, 4, 1> s[2], w;
+    for (int k = 0; k < 4; ++k) w[k] = closest.weight[k];
+    for (int a = 0; a < closest.free; ++a) {
+      t[a] = combine(closest.slope[a], x);
+      for (int k = 0; k < 4; ++k) s[a][k] = closest.slope[a][k];
+      if (a == 1) s[1] -= t[0].dot(t[1]) * s[0], t[1] -= t[0].dot(t[1]) * t[0];
+      const Real length = t[a].norm();
+      if (!(length > 0)) return;
+      t[a] /= length, s[a] /= length;
+    }
+    if (closest.free == 2) {  // turned about the normal until the slopes are orthogonal too
+      const Real angle = 0.5 * std::atan2(2 * s[0].dot(s[1]), s[0].squaredNorm() - s[1].squaredNorm()), c = std::cos(angle),
+                 z = std::sin(angle);
+      const Vec3 t0 = c * t[0] + z * t[1];
+      const Eigen::Matrix<Real, 4, 1> s0 = c * s[0] + z * s[1];
+      t[1] = c * t[1] - z * t[0], s[1] = c * s[1] - z * s[0];
+      t[0] = t0, s[0] = s0;
+    }
+    const Vec3 n = normal();
+    const Real size = w.norm();
+    for (int a = 0; a < closest.free; ++a) {
+      const Real tilt = s[a].norm(), product = tilt * size, square = d * tilt * tilt;
+      if (!(tilt > 0)) continue;
+      const Real c = (square + std::sqrt(square * square + 4 * product * product)) / 2, scale = 1 / std::sqrt(c * c + product * product);
+      VecN<12> v;
+      for (int k = 0; k < 4; ++k) v.segment<3>(3 * k) = scale * (c / tilt * s[a][k] * n + product / size * w[k] * t[a]);
+      f(c, v);
+    }
+  }
   /// Hessian [N/m] of an energy of the distance with this slope [N] and curvature [N/m].
   TAPE_HD MatN<12, 12> hessian(Real slope, Real curvature) const {
     const VecN<12> g = gradient();

@@ -105,16 +105,19 @@ class RandomScene {
 class LongRandomScenes : public testing::TestWithParam<unsigned> {};
 }  // namespace
 
-/// The list at the head of checks.md part 9, but for energy: tumbling polyhedra gain O(dt^2) a step (own_rolled_over says why).
+/// The list at the head of checks.md part 9, but for energy: tumbling polyhedra gain O(dt^2) a step (own_rolled_over says why). Limits may
+/// be reached, and are reported: in 160 seeds, steps of up to 30 ms, five had one step in parts; CCD was capped in six steps.
 TEST_P(LongRandomScenes, KeepTheirPromises) {
   const RandomScene scene(GetParam());
   Simulation simulation(scene.setup());
+  simulation.may_reach_limits = true;
   simulation.run_to(0.4);
   const NewtonParams& newton = scene.setup().newton;
-  std::printf("random %3u: %4d steps  %5.1f Newton a step (max %4d)  smallest gap %9.2e m  %s %s %.0e m/s  %s\n", GetParam(),
-              simulation.state().step, simulation.newton_sum / std::max<Real>(1, simulation.state().step), simulation.newton_max,
-              simulation.min_gap, to_text(newton.hessian).c_str(), to_text(newton.stop).c_str(), newton.velocity_tol,
-              simulation.broken.empty() ? "ok" : "BROKEN");
+  std::printf("random %3u: %4d steps  %5.1f Newton a step (max %4d)  smallest gap %9.2e m  retried %d  capped %d  %s %s %.0e m/s  %s\n",
+              GetParam(), simulation.state().step, simulation.newton_sum / std::max<Real>(1, simulation.state().step),
+              simulation.newton_max, simulation.min_gap, simulation.retried, simulation.ccd_capped, to_text(newton.hessian).c_str(),
+              to_text(newton.stop).c_str(), newton.velocity_tol, simulation.broken.empty() ? "ok" : "BROKEN");
   for (const std::string& what : simulation.broken) ADD_FAILURE() << what;
+  EXPECT_LE(simulation.retried, 1);
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, LongRandomScenes, testing::Range(0u, 40u));

@@ -89,6 +89,35 @@ TEST(Barrier, BetweenTwoPointsTheProjectedHessianIsThePositivePartOfTheExactOne)
     EXPECT_LT((projected - test::psd_part(exact)).norm(), 1e-12 * projected.norm()) << gap;
   }
 }
+TEST(Barrier, KeepsThePositivePartOfTheCurvatureOfDistance) {
+  const Vec3 corners[] = {{0, 0, 0}, {1e-3, 0, 1e-4}, {2e-4, 1.3e-3, -1e-4}};
+  const Vec3 n = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+  const auto above = [&](Real a, Real b, Real height) { return Vec3(a * corners[1] + b * corners[2] + height * n); };
+  for (Real gap : {1e-6, 1e-3, 0.05}) {
+    const Real d = 9e-5 + gap * kDhat;
+    const Vec3 side = (corners[1] - corners[0]).cross(n).normalized();
+    const Pair pairs[] = {
+        {PairKind::vertex_triangle, {above(0.3, 0.2, d), corners[0], corners[1], corners[2]}},
+        {PairKind::vertex_triangle, {above(0.4, 0, 0) + d * (0.8 * side + 0.6 * n), corners[0], corners[1], corners[2]}},
+        {PairKind::edge_edge, crossing(1.2, d)},
+        {PairKind::edge_edge, crossing(0.7, d)},
+        {PairKind::edge_edge, crossing(0.02, d), kFade},
+    };
+    const int free[] = {2, 1, 2, 2, 2};
+    for (int k = 0; k < 5; ++k) {
+      const Pair& p = pairs[k];
+      const PairState at = PairState::at(p.pair, p.view().x);
+      ASSERT_EQ(at.closest.free, free[k]);
+      MatN<12, 12> sum = MatN<12, 12>::Zero();
+      at.for_each_saddle([&](Real c, const VecN<12>& v) { sum += c * v * v.transpose(); });
+      EXPECT_LT((sum - test::psd_part(at.hessian(-1, 0))).norm(), 1e-9 * sum.norm()) << k << " " << gap;
+      if (at.fade.slope != 0) continue;  // the second derivative of the cross product is left out
+      const MatN<12, 12> exact = p.barrier.hessian(p.view(), 0, HessianMode::exact);
+      const MatN<12, 12> projected = p.barrier.hessian(p.view(), 0, HessianMode::projected);
+      EXPECT_GE(test::smallest_eigenvalue(projected - exact), -1e-9 * exact.norm()) << k << " " << gap;
+    }
+  }
+}
 TEST(Barrier, PushesApartAlongTheNormalWithItsNormalForce) {
   const Real d = 9e-5 + kDhat / 2;
   const Pair p(PairKind::vertex_triangle, {{2e-4, 2e-4, d}, {0, 0, 0}, {1e-3, 0, 0}, {0, 1e-3, 0}});

@@ -61,7 +61,24 @@ TEST(BodyInertia, HasTheHessianOfItsEnergyAtAnyAngle) {
     // Rotations do not commute: half the skew matrix of the torque is the slope's alone.
     EXPECT_LT((h - 0.5 * (slope + slope.transpose())).bottomRightCorner(3, 3).norm(), 1e-9 * body.second.norm()) << angle;
     EXPECT_LT((h - slope).topLeftCorner(3, 3).norm(), 1e-9 * body.mass) << angle;
-    EXPECT_GE(test::smallest_eigenvalue(body.hessian(at, target, HessianMode::projected)), -1e-12 * body.second.norm()) << angle;
+  }
+}
+// A turn about an axis of inertia at which the curvature is cos(angle) of the inertia, which is 0 at 90 degrees: what is left must still
+// take a step, and none that is longer than what bounds it allows.
+TEST(BodyInertia, IsPositiveAndBoundsTheCurvatureWhenProjected) {
+  test::EffectWorld world(9);
+  const BodyQuadratic body{0.02, Vec3(1e-6, 2e-6, 5e-6).asDiagonal()};
+  const Real least = 3e-6;  // the least of the moments of inertia, 1 + 2, 1 + 5 and 2 + 5
+  for (Real degrees : {0.0, 60.0, 89.9, 90.0, 120.0, 180.0}) {
+    const Real angle = degrees * std::numbers::pi / 180;
+    for (const Vec3& axis :
+         {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(1, 1, 1).normalized(), world.random_vector(1).normalized()}) {
+      const Pose target{rotation_exp(world.random_vector(3)), Vec3::Zero()};
+      const Pose at{target.rotation * rotation_exp(angle * axis), Vec3::Zero()};
+      const MatN<6, 6> projected = body.hessian(at, target, HessianMode::projected), exact = body.hessian(at, target, HessianMode::exact);
+      EXPECT_GE(test::smallest_eigenvalue(projected), 0.1 * least * (1 - 1e-12)) << degrees << " about " << axis.transpose();
+      EXPECT_GE(test::smallest_eigenvalue(projected - exact), -1e-12 * least) << degrees << " about " << axis.transpose();
+    }
   }
 }
 TEST(BodyInertia, GoesWithTheInverseSquareOfTheTimeStep) {
