@@ -37,7 +37,8 @@ void add_strip(Assembly& a, const Scene& scene, const Strip& strip) {
                  .first_triangle = static_cast<int>(a.triangles.size()),
                  .vertices = static_cast<int>(x.size()),
                  .triangles = static_cast<int>(mesh.triangles.size()),
-                 .columns = mesh.columns};
+                 .columns = mesh.columns,
+                 .hub = strip.winding ? strip.winding->hub : -1};
   for (std::size_t i = 0; i < x.size(); ++i) {
     const int v = add_vertex(a, x[i], {.block = a.blocks++, .body = -1});
     a.v[static_cast<std::size_t>(v)] = strip.velocity;

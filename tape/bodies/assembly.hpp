@@ -14,6 +14,7 @@ struct StripPart {
   int first_vertex = 0;    ///< its vertices and its blocks of unknowns are consecutive
   int first_triangle = 0;  ///< into Assembly::triangles
   int vertices = 0, triangles = 0, columns = 0;
+  int hub = -1;  ///< body that it is wound on, -1 if none
 };
 /// A body in the world's arrays. Frame B of a body has its origin at the centre of mass.
 struct BodyPart {

@@ -33,16 +33,15 @@ struct MoveBody {
   }
 };
 struct MoveVertex {
-  Span<const Vec3> from, direction;
-  Span<const VertexOwner> owner;
+  PathView paths;
   Span<const Vec3> local;
   Span<const Pose> body;
   Real step;
   Span<Vec3> to;
   TAPE_HD void operator()(int v) const {
-    const VertexOwner o = owner[v];
+    const VertexOwner o = paths.owner[v];
     if (o.block < 0) return;
-    to[v] = o.body < 0 ? Vec3(from[v] + step * direction[o.block]) : apply(body[o.body], local[v]);
+    to[v] = o.body < 0 ? paths[v].at(step) : apply(body[o.body], local[v]);
   }
 };
 struct MoveCoordinate {
@@ -76,8 +75,7 @@ class Coordinates {
   void move(const Configuration& from, Span<const Vec3> direction, Real step, Configuration& to) const {
     parallel_for(from.q.size(), coordinates::MoveCoordinate{from.q.span(), direction, q_block_, step, to.q.span()});
     parallel_for(from.body.size(), coordinates::MoveBody{from.body.span(), direction, body_block_.span(), step, to.body.span()});
-    parallel_for(from.x.size(),
-                 coordinates::MoveVertex{from.x.span(), direction, owner_.span(), local_.span(), to.body.span(), step, to.x.span()});
+    parallel_for(from.x.size(), coordinates::MoveVertex{paths(from, direction), local_.span(), to.body.span(), step, to.x.span()});
   }
   /// points[block] = position [m] of the vertex that is this block. Blocks of bodies keep what `points` [blocks] has.
   void block_points(const Configuration& at, Span<Vec3> points) const {

@@ -4,7 +4,8 @@
 #include "tape/math/rotation.hpp"
 
 namespace tape {
-/// A vertex over a trial step: x(t) = centre + exp(t spin) arm + t velocity, t in [0, 1]. Free vertices have no arm.
+/// A vertex over a trial step: x(t) = centre + exp(t spin) arm + t velocity, t in [0, 1]. Free vertices have no arm, unless they ride a
+/// body.
 struct VertexPath {
   Vec3 centre;    ///< [m]
   Vec3 velocity;  ///< [m] per whole step
@@ -24,10 +25,23 @@ struct PathView {
   TAPE_HD VertexPath operator[](int v) const {
     const VertexOwner o = owner[v];
     if (o.block < 0) return {x[v], Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
-    if (o.body < 0) return {x[v], direction[o.block], Vec3::Zero(), Vec3::Zero()};
+    if (o.body < 0) return o.ride < 0 ? straight(v) : riding(v);
     return {body[o.body].position, direction[o.block], x[v] - body[o.body].position, direction[o.block + 1]};
   }
   /// Of the body that carries vertex v, else of a frame that does not turn, at the vertex itself.
   TAPE_HD Pose frame(int v) const { return owner[v].body < 0 ? Pose{Mat3::Identity(), x[v]} : body[owner[v].body]; }
+
+ private:
+  TAPE_HD VertexPath straight(int v) const { return {x[v], direction[owner[v].block], Vec3::Zero(), Vec3::Zero()}; }
+  /// Sets out as the direction says and turns with the body, the more so the less the direction differs from the body's motion there.
+  /// On chords a roll that turns by an angle a becomes a^2/2 wider, which stiff tape does not allow.
+  TAPE_HD VertexPath riding(int v) const {
+    const VertexOwner o = owner[v];
+    const Vec3 spin = direction[o.ride_block + 1], arm = x[v] - body[o.ride].position, turn = spin.cross(arm);
+    const Real apart = (direction[o.block] - direction[o.ride_block] - turn).squaredNorm(), all = turn.squaredNorm();
+    if (!(apart < all)) return straight(v);
+    const Real share = (1 - apart / all) * (1 - apart / all);
+    return {body[o.ride].position, direction[o.block] - share * turn, arm, share * spin};
+  }
 };
 }  // namespace tape

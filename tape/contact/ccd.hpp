@@ -26,13 +26,33 @@ TAPE_HD inline Real first_zero(Real a, Real b, Real c) {
   return root - b > 0 ? 2 * a / (root - b) : 0.0;
 }
 
-/// Where four paths stand at one time, relative to the start of the first and seen from its drift, and how they go on.
+/// Whether four paths turn about one body: tape on its roll, which is seen from a frame that turns with the first.
+TAPE_HD inline bool turn_together(const VertexPath (&path)[4]) {
+  bool together = !path[0].straight();
+  for (int i = 1; i < 4; ++i) together = together && path[i].centre == path[0].centre && !path[i].straight();
+  return together;
+}
+/// Where four paths stand at one time, relative to the start of the first and seen from its drift, and how they go on. Distances are the
+/// same from a frame that turns, in which with its spin w and e = spin - w, a path of drift u, exp(t w) y = t u + exp(t spin) arm, has
+///   |y''| <= |w| (2 + |w|) |u| + |e| (|e| + |w|) |arm|   for t in [0, 1].
 struct Motion {
   Vec3 x[4], velocity[4];  ///< [m], [m] per whole step
   Real bend[4];            ///< [m] bound of the acceleration, per whole step squared
 };
 TAPE_HD inline Motion motion_at(const VertexPath (&path)[4], Real t) {
+  const auto turned = [t](const Vec3& spin, const Vec3& r) { return t == 0 ? r : rotate(t * spin, r); };  // most pairs take one look
   Motion m;
+  if (turn_together(path)) {
+    const Vec3 w = path[0].spin;
+    for (int i = 0; i < 4; ++i) {
+      const VertexPath& p = path[i];
+      const Vec3 drift = p.velocity - path[0].velocity, apart = p.spin - w, arm = turned(p.spin, p.arm);
+      m.x[i] = turned(-w, t * drift + arm);
+      m.velocity[i] = turned(-w, drift - w.cross(t * drift) + apart.cross(arm));
+      m.bend[i] = w.norm() * (2 + w.norm()) * drift.norm() + apart.norm() * (apart.norm() + w.norm()) * p.arm.norm();
+    }
+    return m;
+  }
   for (int i = 0; i < 4; ++i) {
     const VertexPath& p = path[i];
     const Vec3 start = p.centre - path[0].centre;
@@ -42,7 +62,7 @@ TAPE_HD inline Motion motion_at(const VertexPath (&path)[4], Real t) {
       m.x[i] = (start + p.arm) + t * m.velocity[i];
       continue;
     }
-    const Vec3 arm = rotate(t * p.spin, p.arm), swing = p.spin.cross(arm);
+    const Vec3 arm = turned(p.spin, p.arm), swing = p.spin.cross(arm);
     m.x[i] = (start + arm) + t * m.velocity[i];
     m.velocity[i] += swing;
     m.bend[i] = p.spin.norm() * swing.norm();

@@ -22,7 +22,9 @@ Carriage carry(const Assembly& a, const std::vector<Cluster>& clusters, int coll
     for (int v = 0; v < strip.vertices; ++v) {
       const auto i = static_cast<std::size_t>(strip.first_vertex + v);
       if (!member[static_cast<std::size_t>(v)]) {
-        c.owner[i] = {c.blocks++, -1};
+        c.owner[i] = {.block = c.blocks++};
+        if (body < 0 && strip.hub >= 0 && a.bodies[static_cast<std::size_t>(strip.hub)].block >= 0)
+          c.owner[i].ride = strip.hub, c.owner[i].ride_block = a.bodies[static_cast<std::size_t>(strip.hub)].block;
         continue;
       }
       const Cluster& cluster = clusters[known - 1];

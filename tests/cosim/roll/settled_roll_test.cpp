@@ -9,6 +9,7 @@
 
 #include "cosim/roll/roll_figures.hpp"
 #include "cosim/run/read_run.hpp"
+#include "tape/bodies/free_flight.hpp"
 #include "tape/contact/intersection.hpp"
 #include "tape/step/engagement.hpp"
 
@@ -175,6 +176,24 @@ TEST(SettledRoll, FallsAsOneBodyUntilItTouches) {
     for (int i = 0; i < kSteps; ++i) ASSERT_TRUE(stepper->step(state).ok);
     const Real dt = 0.01, fallen = 9.81 * dt * dt * kSteps * (kSteps + 1) / 2;  // implicit Euler
     EXPECT_NEAR(-state.bodies[0].pose.position.z(), fallen, 0.01 * fallen) << tolerance;
+  }
+}
+
+TEST(SettledRoll, TurnsFarInAStepInAFewNewtonIterations) {  // on chords its first update would make it 2 % wider
+  cosim::RunInput input = roll_input({"gravity=[0,0,0]", "interfaces.0.slip=bonding", "interfaces.1.slip=bonding"});
+  cosim::place_roll(settled(), 0, input.setup);
+  const World world = World::build(input.setup);
+  const std::unique_ptr<Stepper> stepper = make_stepper(Backend::cpu, world);
+  State state = State::start(world);
+  BodyState& hub = state.bodies[0];
+  const Mat3& R = hub.pose.rotation;
+  const Vec3 spin = R * Vec3(0, 0, 20);  // rad/s, about the hub's axis
+  hub.angular_momentum = R * inertia_tensor(world.assembly.bodies[0].mass.second) * R.transpose() * spin;
+  for (std::size_t v = 0; v < state.v.size(); ++v) state.v[v] = spin.cross(state.x[v] - hub.pose.position);
+  for (int k = 0; k < 5; ++k) {
+    const StepReport report = stepper->step(state);
+    ASSERT_TRUE(report.ok) << report.failure;
+    EXPECT_LE(report.newton, 10) << k << ", on chords it takes 20 to 25";
   }
 }
 

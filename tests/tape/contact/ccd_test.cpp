@@ -189,6 +189,8 @@ TEST(Ccd, TheGapNeverFallsBelowItsShareAlongRandomTrueTrajectories) {
     for (int i = 0; i < 4; ++i)
       p.path[i] =
           i >= 2 && trial % 4 >= 2 ? VertexPath{centre, velocity, vector(), spin} : VertexPath{vector(), 2 * vector(), kNone, kNone};
+    if (trial % 8 >= 4)  // about one body, not quite alike
+      for (VertexPath& path : p.path) path = {centre, velocity + 0.5 * vector(), vector(), spin + 0.5 * vector()};
     const CcdSettings settings{.eta = 0.1, .iterations = 100'000};
     const Real start = distance_at(kind, p, 0), xi = 0.2 * start, t = toi(kind, p, settings, xi);
     limited += t < 1;
@@ -198,6 +200,15 @@ TEST(Ccd, TheGapNeverFallsBelowItsShareAlongRandomTrueTrajectories) {
   EXPECT_GT(limited, 200);
 }
 
+TEST(Ccd, LayersThatTurnTogetherTakeOneLook) {
+  const Vec3 centre(0.1, 0.2, 0.3), spin(0, 0, 0.3);
+  const Real r = 0.02, gap = 3e-5;
+  const auto path = [&](const Vec3& arm) { return VertexPath{centre, 1e-6 * Vec3(arm.y(), 0, arm.x()), arm, spin}; };
+  const Paths p{{path({r + gap, 1e-4, 0}), path({r, -1e-3, -1e-3}), path({r, 2e-3, -1e-3}), path({r, 0, 2e-3})}};
+  const PairStep step = largest_step(kVT, p.path, 0, {.eta = 0.2, .iterations = 1});
+  EXPECT_EQ(step.t, 1);
+  EXPECT_FALSE(step.capped);
+}
 TEST(Ccd, RunningOutOfIterationsIsSaidAndSafe) {
   const Vec3 spin(0, 0, 50);
   const Paths p{{{kNone, kNone, Vec3(1, 0, 0), spin},
