@@ -11,9 +11,6 @@ std::vector<Index3> triangles_of(const Assembly& a, int first, int count, int fi
   return out;
 }
 
-/// The body that a strip is wound on, -1 if none.
-int hub_of(const Strip& strip) { return strip.winding ? strip.winding->hub : -1; }
-
 /// A flat strip must not feel itself: no cell may be thinner than the contact distance.
 void check_cells(const Assembly& a, const Scene& scene) {
   for (std::size_t s = 0; s < a.strips.size(); ++s) {
@@ -79,12 +76,12 @@ SurfaceMesh make_surface(const Scene& scene, const Assembly& a) {
     }
     mesh.add_object(strip.name, flat, owners(part.first_vertex, part.vertices),
                     triangles_of(a, part.first_triangle, part.triangles, part.first_vertex),
-                    scene.films[static_cast<std::size_t>(part.film)].xi, strip.material, hub_of(strip));
+                    scene.films[static_cast<std::size_t>(part.film)].xi, strip.material, part.hub);
   }
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const BodyPart& part = a.bodies[b];
     const std::vector<Vec3> placed(a.x.begin() + part.first_vertex, a.x.begin() + part.first_vertex + part.vertices);
-    const bool hub = std::ranges::any_of(scene.strips, [&](const Strip& s) { return hub_of(s) == static_cast<int>(b); });
+    const bool hub = std::ranges::find(a.strips, static_cast<int>(b), &StripPart::hub) != a.strips.end();
     mesh.add_object(scene.bodies[b].name, placed, owners(part.first_vertex, part.vertices),
                     triangles_of(a, part.first_triangle, part.triangles, part.first_vertex), scene.bodies[b].xi, scene.bodies[b].material,
                     hub ? static_cast<int>(b) : -1);
