@@ -23,8 +23,9 @@ Carriage carry(const Assembly& a, const std::vector<Cluster>& clusters, int coll
       const auto i = static_cast<std::size_t>(strip.first_vertex + v);
       if (!member[static_cast<std::size_t>(v)]) {
         c.owner[i] = {.block = c.blocks++};
-        if (body < 0 && strip.hub >= 0 && a.bodies[static_cast<std::size_t>(strip.hub)].block >= 0)
-          c.owner[i].ride = strip.hub, c.owner[i].ride_block = a.bodies[static_cast<std::size_t>(strip.hub)].block;
+        const int ride = body >= 0 ? body : strip.hub;
+        if (ride >= 0 && a.bodies[static_cast<std::size_t>(ride)].block >= 0)
+          c.owner[i].ride = ride, c.owner[i].ride_block = a.bodies[static_cast<std::size_t>(ride)].block;
         continue;
       }
       const Cluster& cluster = clusters[known - 1];
