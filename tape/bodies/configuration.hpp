@@ -21,15 +21,14 @@ struct Configuration {
 
 namespace coordinates {
 struct MoveBody {
-  Span<const Pose> from;
-  Span<const Vec3> direction;
-  Span<const int> block;
+  PathView paths;
+  Span<const int> block, centre;
   Real step;
   Span<Pose> to;
   TAPE_HD void operator()(int b) const {
     if (block[b] < 0) return;
-    const Mat3 turn = rotation_exp(step * direction[block[b] + 1]);
-    to[b] = {turn * from[b].rotation, from[b].position + step * direction[block[b]]};
+    const Mat3 turn = rotation_exp(step * paths.direction[block[b] + 1]);
+    to[b] = {turn * paths.body[b].rotation, paths[centre[b]].at(step)};
   }
 };
 struct MoveVertex {
@@ -66,16 +65,22 @@ class Coordinates {
  public:
   /// @param owner       [nv]
   /// @param local       [nv] m, in frame B
-  /// @param body_block  [bodies] first block of each, -1 if it is fixed
-  /// @param q_block     first block of the articulations, which are consecutive
-  Coordinates(const std::vector<VertexOwner>& owner, const std::vector<Vec3>& local, const std::vector<int>& body_block, int q_block)
-      : owner_(owner), local_(local), body_block_(body_block), q_block_(q_block) {}
+  /// @param body_block   [bodies] first block of each, -1 if it is fixed
+  /// @param body_centre  [bodies] vertex at the centre of mass of each, -1 if it is fixed
+  /// @param q_block      first block of the articulations, which are consecutive
+  Coordinates(const std::vector<VertexOwner>& owner,
+              const std::vector<Vec3>& local,
+              const std::vector<int>& body_block,
+              const std::vector<int>& body_centre,
+              int q_block)
+      : owner_(owner), local_(local), body_block_(body_block), body_centre_(body_centre), q_block_(q_block) {}
   Span<const VertexOwner> owner() const { return owner_.span(); }
   /// to = from moved by `step` times the direction [blocks] m and rad. Fixed things keep what `to` has.
   void move(const Configuration& from, Span<const Vec3> direction, Real step, Configuration& to) const {
     parallel_for(from.q.size(), coordinates::MoveCoordinate{from.q.span(), direction, q_block_, step, to.q.span()});
-    parallel_for(from.body.size(), coordinates::MoveBody{from.body.span(), direction, body_block_.span(), step, to.body.span()});
-    parallel_for(from.x.size(), coordinates::MoveVertex{paths(from, direction), local_.span(), to.body.span(), step, to.x.span()});
+    const PathView along = paths(from, direction);
+    parallel_for(from.body.size(), coordinates::MoveBody{along, body_block_.span(), body_centre_.span(), step, to.body.span()});
+    parallel_for(from.x.size(), coordinates::MoveVertex{along, local_.span(), to.body.span(), step, to.x.span()});
   }
   /// points[block] = position [m] of the vertex that is this block. Blocks of bodies keep what `points` [blocks] has.
   void block_points(const Configuration& at, Span<Vec3> points) const {
@@ -88,7 +93,7 @@ class Coordinates {
  private:
   Buffer<VertexOwner> owner_;
   Buffer<Vec3> local_;
-  Buffer<int> body_block_;
+  Buffer<int> body_block_, body_centre_;
   int q_block_;
 };
 }  // namespace tape::TAPE_SIDE

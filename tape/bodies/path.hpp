@@ -26,13 +26,20 @@ struct PathView {
     const VertexOwner o = owner[v];
     if (o.block < 0) return {x[v], Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
     if (o.body < 0) return o.ride < 0 ? straight(v) : riding(v);
-    return {body[o.body].position, direction[o.block], x[v] - body[o.body].position, direction[o.block + 1]};
+    return carried(v);
   }
   /// Of the body that carries vertex v, else of a frame that does not turn, at the vertex itself.
   TAPE_HD Pose frame(int v) const { return owner[v].body < 0 ? Pose{Mat3::Identity(), x[v]} : body[owner[v].body]; }
 
  private:
   TAPE_HD VertexPath straight(int v) const { return {x[v], direction[owner[v].block], Vec3::Zero(), Vec3::Zero()}; }
+  /// Turns about the centre of its body, or of the one that its body rides, from which the way of its own centre is an arc: two bodies that
+  /// turn as one keep their places to each other.
+  TAPE_HD VertexPath carried(int v) const {
+    const VertexOwner o = owner[v];
+    const Vec3 own = body[o.body].position, pivot = o.ride < 0 ? own : body[o.ride].position, spin = direction[o.block + 1];
+    return {pivot, direction[o.block] + spin.cross(pivot - own), x[v] - pivot, spin};
+  }
   /// Sets out as the direction says and turns with the body, the more so the less the direction differs from the body's motion there.
   /// On chords a roll that turns by an angle a becomes a^2/2 wider, which stiff tape does not allow.
   TAPE_HD VertexPath riding(int v) const {

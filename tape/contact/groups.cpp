@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 
 #include "tape/core/error.hpp"
 
@@ -13,12 +14,14 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 ObjectGroups::ObjectGroups(const SurfaceMesh& mesh)
     : component_of_object(mesh.objects.size(), -1), parent_(mesh.objects.size()), fixed_(mesh.objects.size(), true) {
   std::iota(parent_.begin(), parent_.end(), 0);
+  std::set<std::pair<int, int>> riders;  // object, block of the body that it rides
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     const VertexOwner owner = mesh.owner[v];
     const int object = mesh.vertices[v].object;
     TAPE_CHECK(object >= 0 && object < objects());
     if (owner.block < 0) continue;
     fixed_[at(object)] = false;
+    if (owner.body < 0 && owner.ride >= 0) riders.emplace(object, owner.ride_block);
     const std::size_t end = at(owner.block) + (owner.body < 0 ? 1 : 2);
     if (object_of_block.size() < end) object_of_block.resize(end, -1);
     const int other = object_of_block[at(owner.block)];
@@ -33,6 +36,8 @@ ObjectGroups::ObjectGroups(const SurfaceMesh& mesh)
     std::fill_n(object_of_block.begin() + joint.first_block, joint.blocks, joint.objects[0]);
   }
   for (const auto& [a, b] : mesh.tied) join(a, b);
+  for (const auto& [object, block] : riders)  // its path follows from both directions
+    if (at(block) < object_of_block.size() && object_of_block[at(block)] >= 0) join(object, object_of_block[at(block)]);
   constant_parent_ = parent_;
   number_components();
 }

@@ -80,7 +80,8 @@ struct MakeFrames {
     if (k == kWorld) return;
     const VertexPath lead = paths[s.lead[k]];
     const Pose now = paths.frame(s.lead[k]);
-    frames[k] = {now.position, lead.velocity, lead.spin, origin[k].rotation * now.rotation.transpose(), origin[k].position};
+    const Mat3 turn = origin[k].rotation * now.rotation.transpose();
+    frames[k] = {lead.centre, lead.velocity, lead.spin, turn, origin[k].position + turn * (lead.centre - now.position)};
   }
 };
 /// Of a frame that goes with a cluster: its coordinates are those in which the members are at home.

@@ -8,6 +8,7 @@ Carriage carry(const Assembly& a, const std::vector<Cluster>& clusters, int coll
   for (std::size_t s = 0; s < a.strips.size(); ++s) {
     const StripPart& strip = a.strips[s];
     const int body = a.cluster_body(static_cast<int>(s));
+    const int ride_block = strip.hub < 0 ? -1 : a.bodies[static_cast<std::size_t>(strip.hub)].block, ride = ride_block < 0 ? -1 : strip.hub;
     std::vector<bool> member(static_cast<std::size_t>(strip.vertices), false);
     if (body >= 0) {
       const Cluster& cluster = clusters[known++];
@@ -22,19 +23,20 @@ Carriage carry(const Assembly& a, const std::vector<Cluster>& clusters, int coll
     for (int v = 0; v < strip.vertices; ++v) {
       const auto i = static_cast<std::size_t>(strip.first_vertex + v);
       if (!member[static_cast<std::size_t>(v)]) {
-        c.owner[i] = {.block = c.blocks++};
-        const int ride = body >= 0 ? body : strip.hub;
-        if (ride >= 0 && a.bodies[static_cast<std::size_t>(ride)].block >= 0)
-          c.owner[i].ride = ride, c.owner[i].ride_block = a.bodies[static_cast<std::size_t>(ride)].block;
+        c.owner[i] = {c.blocks++, -1, ride, ride_block};
         continue;
       }
       const Cluster& cluster = clusters[known - 1];
-      c.owner[i] = {a.bodies[static_cast<std::size_t>(body)].block, body};
+      c.owner[i] = {a.bodies[static_cast<std::size_t>(body)].block, body, ride, ride_block};
       c.local[i] = (*cluster.local)[static_cast<std::size_t>(v)] - cluster.centre;
       carried += c.mass[i];
       c.mass[i] = 0;
     }
-    if (body >= 0) c.mass[static_cast<std::size_t>(a.bodies[static_cast<std::size_t>(body)].centre)] = carried;
+    if (body >= 0) {
+      const auto centre = static_cast<std::size_t>(a.bodies[static_cast<std::size_t>(body)].centre);
+      c.mass[centre] = carried;
+      c.owner[centre].ride = ride, c.owner[centre].ride_block = ride_block;
+    }
     c.strips.back().blocks = c.blocks - c.strips.back().block;
   }
   return c;

@@ -173,10 +173,10 @@ class SideStepper final : public Stepper {
   void take_up(const State& state) {
     carriage_ = carry(world_, state);
     fronts_ = fronts(state);
-    std::vector<int> body_block;
-    for (const BodyPart& b : world_.assembly.bodies) body_block.push_back(b.block);
+    std::vector<int> body_block, body_centre;
+    for (const BodyPart& b : world_.assembly.bodies) body_block.push_back(b.block), body_centre.push_back(b.centre);
     const int q_block = world_.assembly.first_strip_block - articulations_.q_blocks();
-    coordinates_.emplace(carriage_.owner, carriage_.local, body_block, q_block);
+    coordinates_.emplace(carriage_.owner, carriage_.local, body_block, body_centre, q_block);
     mass_.upload(carriage_.mass);
     body_mass_.upload(carriage_.body_mass);
     SystemLayout layout;

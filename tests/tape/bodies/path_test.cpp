@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "tape/bodies/configuration.hpp"
+
 using namespace tape;
+using namespace tape::on_cpu;
 
 namespace {
 /// A vertex that rides a body, whose two blocks come first.
@@ -43,4 +46,52 @@ TEST(VertexPath, APartOfARidersStepIsTheStepOfAPartOfTheDirection) {
   const VertexPath whole = rider.path();
   for (Vec3& d : rider.direction) d *= 0.3;
   EXPECT_LT((rider.path().at(1) - whole.at(0.3)).norm(), 1e-16);
+}
+
+namespace {
+/// Two bodies, of which the second rides the first, each with its centre and a point, on a step of 0.3 rad.
+struct Ridden {
+  Pose body[2]{{rotation_exp(Vec3(0.1, 0.2, -0.3)), Vec3(0.3, -0.1, 0.2)}, {rotation_exp(Vec3(-1, 0.4, 0)), Vec3(0.301, -0.102, 0.203)}};
+  Vec3 local[4]{Vec3::Zero(), Vec3(0.02, 0.01, -0.003), Vec3::Zero(), Vec3(-0.01, 0.02, 0.004)};
+  Vec3 direction[4]{Vec3(1e-3, 2e-3, -1e-3), Vec3(0.1, -0.05, 0.28), Vec3::Zero(), Vec3::Zero()};
+  Coordinates coordinates{{{0, 0}, {0, 0}, {2, 1, 0, 0}, {2, 1, 0, 0}}, {local, local + 4}, {0, 2}, {0, 2}, 4};
+  Configuration from, to;
+  Ridden() {
+    std::vector<Vec3> x;
+    for (int v = 0; v < 4; ++v) x.push_back(apply(body[v / 2], local[v]));
+    from.x.upload(x), from.body.upload({body, body + 2});
+    to.copy_from(from);
+  }
+  Buffer<Vec3> unknowns() const { return Buffer<Vec3>(std::vector<Vec3>(direction, direction + 4)); }
+};
+}  // namespace
+
+TEST(Coordinates, TwoBodiesThatTurnAsOneKeepTheirPlacesToEachOther) {
+  Ridden r;
+  r.direction[2] = r.direction[0] + r.direction[1].cross(r.body[1].position - r.body[0].position);
+  r.direction[3] = r.direction[1];
+  const Buffer<Vec3> direction = r.unknowns();
+  for (Real t : {0.25, 0.5, 1.0}) {
+    r.coordinates.move(r.from, direction.span(), t, r.to);
+    const std::vector<Pose> now = r.to.body.download();
+    const auto seen = [](const Pose& a, const Pose& b) { return Vec3(a.rotation.transpose() * (b.position - a.position)); };
+    EXPECT_LT((seen(now[0], now[1]) - seen(r.body[0], r.body[1])).norm(), 1e-16) << t << ", on straight ways 2e-4 m";
+  }
+}
+TEST(Coordinates, ABodyThatRidesSetsOutAsItsOwnDirectionSaysAndStaysRigid) {
+  Ridden r;
+  r.direction[2] = Vec3(-2e-3, 1e-3, 3e-3), r.direction[3] = Vec3(0.2, 0.3, -0.1);
+  const Buffer<Vec3> direction = r.unknowns();
+  const PathView paths = r.coordinates.paths(r.from, direction.span());
+  const Real h = 1e-5;
+  for (int v : {2, 3}) {
+    const Vec3 speed = r.direction[2] + r.direction[3].cross(paths.x[v] - r.body[1].position);
+    EXPECT_LT(((paths[v].at(h) - paths[v].at(-h)) / (2 * h) - speed).norm(), 1e-10) << v;
+  }
+  r.coordinates.move(r.from, direction.span(), 0.7, r.to);
+  const Pose now = r.to.body.download()[1];
+  for (int v : {2, 3}) {
+    EXPECT_LT((r.to.x.download()[static_cast<std::size_t>(v)] - apply(now, r.local[v])).norm(), 1e-16) << v;
+    EXPECT_LT((paths[v].at(0.7) - apply(now, r.local[v])).norm(), 1e-16) << v << ", as CCD sees it";
+  }
 }

@@ -477,6 +477,26 @@ TEST(ContactSearch, TwoObjectsOnOneBodyShareAStepLimit) {
   EXPECT_EQ(limit[2], limit[1]);
 }
 
+TEST(ContactSearch, WhatRidesABodySharesItsStepLimit) {
+  for (const bool rides : {true, false}) {
+    test::Surface s;
+    add_table(s, 1e-3);
+    const VertexOwner body{0, 0};
+    add_tile(s, 0, 0, &body);
+    s.blocks = 2;
+    add_tile(s, 0.5, 0.5);
+    for (std::size_t v = s.x.size() - 4; rides && v < s.x.size(); ++v) s.mesh.owner[v].ride = 0, s.mesh.owner[v].ride_block = 0;
+    Scene scene(s);
+    scene.bodies = {{Mat3::Identity(), Vec3(0, 0, 0)}};
+    scene.direction[0] = Vec3(0, -2e-3, 0);
+    ContactSearch search(scene.mesh(), kDhat, kDhat);
+    search.update(scene.paths(), 0);
+    const std::vector<Real> limit = search.limit_steps(scene.paths(), {});
+    EXPECT_LT(limit[1], 0.5);
+    EXPECT_EQ(limit[2], rides ? limit[1] : 1) << "a rider's path follows from both directions";
+  }
+}
+
 TEST(ContactSearch, ThreadsAndOrderOfIterationsChangeNothing) {
   Scene scene(test::wound_strip(6, 2.7e-4, kXi));
   scene.jiggle(2e-4, 11);
