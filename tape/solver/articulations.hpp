@@ -34,11 +34,16 @@ struct DriveBlock {
     }
     return sum;
   }
+  /// Which limit is reached: -1 the least, 1 the most, 0 none.
+  TAPE_HD int side(const Vec3& ahead, int k) const {
+    const Real f = stiffness[k] * ahead[k];
+    return f < least[k] ? -1 : f > most[k] ? 1 : 0;
+  }
   /// Stiffness where the limits are not reached.
   TAPE_HD Vec3 slope(const Vec3& ahead) const {
     Vec3 out = stiffness;
     for (int k = 0; k < 3; ++k)
-      if (const Real f = stiffness[k] * ahead[k]; f < least[k] || f > most[k]) out[k] = 0;
+      if (side(ahead, k) != 0) out[k] = 0;
     return out;
   }
 };
@@ -68,7 +73,8 @@ class Articulations {
   /// @param target  [articulations][m] where q is at its end if nothing on the tape side exerts a force
   void begin(const std::vector<ArticulationStep>& steps, const std::vector<Eigen::VectorXd>& target, Real dt);
   EnergySum energy(Span<const Vec3> q) const;
-  /// Solves for the unknowns' Newton direction x. The right side b, minus the gradient, becomes that by what is solved for: 0 at links.
+  /// Solves for the unknowns' Newton direction x, to the minimum of what is a parabola between the limits of the drives. The right side b,
+  /// minus the gradient, becomes that by what is solved for: 0 at links.
   /// @param points   [n] m, position of each block of a strip
   /// @param limited  false: as if the drives had no limits
   LinearReport solve(LinearSolver& linear, const BlockMatrix& a, Span<const Vec3> points, Span<const Vec3> q, bool limited, Span<Vec3> b,
@@ -84,6 +90,7 @@ class Articulations {
   };
   FoldView view(bool limited = true) const;
   void fold(const SlotGroup& group, int more, Folded& out) const;
+  void pass_limits(LinearSolver& linear, int inertia, LinearReport& report);
 
   std::vector<ArticulationPart> parts_;
   std::vector<int> body_block_;
@@ -96,6 +103,6 @@ class Articulations {
   Buffer<Vec3> target_;
   Folded fixed_, contact_;
   BlockMatrix matrix_;
-  Buffer<Vec3> points_, right_, solution_;
+  Buffer<Vec3> points_, right_, solution_, ahead_;
 };
 }  // namespace tape::TAPE_SIDE

@@ -54,7 +54,7 @@ struct Fold {
 struct AddInertia {
   FoldView f;
   int slot;
-  Span<const Vec3> q, target;
+  Span<const Vec3> ahead;  // of the target
   Span<std::uint64_t> keys;
   Span<Mat3> values;
   TAPE_HD void operator()(int articulation) const {
@@ -65,7 +65,7 @@ struct AddInertia {
       for (int c = r; c < of.count; ++c, ++at) {
         keys[at] = block_key(of.solved + r, of.solved + c);
         values[at] = f.inertia[of.inertia + r * of.count + c];
-        if (c == r) values[at].diagonal() += f.drives[of.first + r].slope(q[of.first + r] - target[of.first + r]);
+        if (c == r) values[at].diagonal() += f.drives[of.first + r].slope(ahead[of.first + r]);
       }
     }
   }
@@ -128,6 +128,42 @@ struct Unfold {
     const QBlocks& part = f.of(*link);
     x[i].setZero();
     for (int c = 0; c < part.count; ++c) x[i] += f.jacobian[link->jacobian + c] * solution[part.solved + c];
+  }
+};
+struct Ahead {
+  Span<const Vec3> q, target;
+  Span<Vec3> ahead;
+  TAPE_HD void operator()(int k) const { ahead[k] = q[k] - target[k]; }
+};
+/// Coordinates of drives one after the other.
+inline Eigen::VectorXd in_line(const std::vector<Vec3>& v) {
+  return v.empty() ? Eigen::VectorXd() : Eigen::Map<const Eigen::VectorXd>(v.front().data(), 3 * static_cast<Eigen::Index>(v.size()));
+}
+inline std::vector<Vec3> in_blocks(const Eigen::VectorXd& v) {
+  std::vector<Vec3> out;
+  for (Eigen::Index k = 0; k < v.size(); k += 3) out.emplace_back(v.segment<3>(k));
+  return out;
+}
+/// Drives on the host, by how far all coordinates are ahead.
+struct Drives {
+  std::vector<DriveBlock> blocks;
+  template <class F>
+  Eigen::VectorXd each(const Eigen::VectorXd& ahead, const F& f) const {
+    Eigen::VectorXd out(ahead.size());
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      const auto k = 3 * static_cast<Eigen::Index>(b);
+      out.segment<3>(k) = f(blocks[b], Vec3(ahead.segment<3>(k)));
+    }
+    return out;
+  }
+  Eigen::VectorXd force(const Eigen::VectorXd& ahead) const {
+    return each(ahead, [](const DriveBlock& d, const Vec3& a) { return d.force(a); });
+  }
+  Eigen::VectorXd slope(const Eigen::VectorXd& ahead) const {
+    return each(ahead, [](const DriveBlock& d, const Vec3& a) { return d.slope(a); });
+  }
+  Eigen::VectorXd side(const Eigen::VectorXd& ahead) const {
+    return each(ahead, [](const DriveBlock& d, const Vec3& a) { return Vec3(d.side(a, 0), d.side(a, 1), d.side(a, 2)); });
   }
 };
 /// Piece (row, column) of a matrix that beyond its end is like `out`.
@@ -229,8 +265,11 @@ inline LinearReport Articulations::solve(LinearSolver& linear, const BlockMatrix
   int more = 0;
   for (const ArticulationPart& part : parts_) more += part.blocks * (part.blocks + 1) / 2;
   fold(a.fixed(), more, fixed_);
-  parallel_for(articulations_.size(), articulations::AddInertia{view(limited), fixed_.keys.size() - more, q, target_.span(),
-                                                                fixed_.keys.span(), fixed_.values.span()});
+  const int inertia = fixed_.keys.size() - more;
+  ahead_.resize(q_blocks_);
+  parallel_for(q_blocks_, articulations::Ahead{q, target_.span(), ahead_.span()});
+  parallel_for(articulations_.size(),
+               articulations::AddInertia{view(limited), inertia, ahead_.span(), fixed_.keys.span(), fixed_.values.span()});
   fold(a.contact(), 0, contact_);
   matrix_.set_fixed_pattern(right_.size(), fixed_.keys.span());
   matrix_.accumulate_fixed(fixed_.values.span());
@@ -239,9 +278,47 @@ inline LinearReport Articulations::solve(LinearSolver& linear, const BlockMatrix
   parallel_for(articulations_.size(), articulations::FoldRight{view(limited), first_block_, q, target_.span(), b});
   parallel_for(b.size, articulations::Gather{solved_.span(), b, right_.span()});
   parallel_for(b.size, articulations::Gather{solved_.span(), points, points_.span()});
-  const LinearReport report = linear.solve(matrix_, points_.span(), right_.span(), solution_.span());
+  LinearReport report = linear.solve(matrix_, points_.span(), right_.span(), solution_.span());
+  if (limited && !report.negative_curvature) pass_limits(linear, inertia, report);
   parallel_for(b.size, articulations::Unfold{view(), solution_.span(), x});
   return report;
+}
+
+/// solution_ is the minimum of Newton's parabola, in which each drive goes on as it does where the unknowns are. Takes it to the minimum of
+/// what is a parabola between the drives' limits: Newton's method again, with an exact line search. The gradient without drives,
+/// rest = H x - b, needs no product with H: of an update d that solves (H + S) d = -(rest + f), H d = -f - S d - rest.
+inline void Articulations::pass_limits(LinearSolver& linear, int inertia, LinearReport& report) {
+  constexpr int kMost = 20;
+  using Vector = Eigen::VectorXd;
+  const articulations::Drives drives{drives_.download()};
+  const Eigen::Index first = 3 * articulations_.download().front().solved, count = 3 * q_blocks_;
+  Vector end = articulations::in_line(solution_.download()), x = Vector::Zero(end.size()),
+         ahead = articulations::in_line(ahead_.download());
+  Vector right = articulations::in_line(right_.download());
+  right.segment(first, count) += drives.force(ahead);
+  Vector rest = -right;
+  for (int k = 0; k < kMost; ++k) {
+    const Vector d = end - x, turn = d.segment(first, count), force = drives.force(ahead), slope = drives.slope(ahead);
+    if (drives.side(ahead + turn) == drives.side(ahead)) return;
+    Vector bend = -rest;
+    bend.segment(first, count) -= force + slope.cwiseProduct(turn);
+    const auto rise = [&, at = d.dot(rest), by = d.dot(bend)](Real t) { return at + t * by + turn.dot(drives.force(ahead + t * turn)); };
+    Real t = 1;
+    if (rise(1) > 0)
+      for (Real low = 0, high = 1; high - low > 1e-12; (rise(t) > 0 ? high : low) = t) t = (low + high) / 2;
+    x += t * d, rest += t * bend, ahead += t * turn;
+    Vector b = right;
+    b.segment(first, count) += drives.slope(ahead).cwiseProduct(x.segment(first, count)) - drives.force(ahead);
+    right_.upload(articulations::in_blocks(b)), ahead_.upload(articulations::in_blocks(ahead));
+    parallel_for(articulations_.size(),
+                 articulations::AddInertia{view(), inertia, ahead_.span(), fixed_.keys.span(), fixed_.values.span()});
+    matrix_.accumulate_fixed(fixed_.values.span());
+    const LinearReport again = linear.solve(matrix_, points_.span(), right_.span(), solution_.span());
+    report.iterations += again.iterations;
+    if (again.negative_curvature) break;
+    end = articulations::in_line(solution_.download());
+  }
+  solution_.upload(articulations::in_blocks(x));
 }
 
 inline std::vector<Eigen::VectorXd> Articulations::coordinates(const std::vector<Vec3>& q) const {

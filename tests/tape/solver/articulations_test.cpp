@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Dense>
+#include <algorithm>
 #include <random>
 
 #include "tape/solver/articulations.inl"
@@ -53,6 +54,24 @@ struct Problem {
     T.block(27, 8, 12, 12).setIdentity();
   }
   std::vector<Eigen::VectorXd> targets() const { return {target.head(5), target.tail(3)}; }
+  /// The potential's matrix, split over both groups.
+  BlockMatrix matrix() const {
+    BlockMatrix a;
+    std::vector<std::uint64_t> fixed, contact;
+    std::vector<Mat3> fixed_values, contact_values;
+    for (int i = 0; i < 13; ++i) {
+      for (int j = i; j < 13; ++j) {
+        const Mat3 m = A.block<3, 3>(3 * i, 3 * j);
+        (i + j < 9 ? contact : fixed).push_back(block_key(i, j));
+        (i + j < 9 ? contact_values : fixed_values).push_back(m);
+      }
+    }
+    a.set_fixed_pattern(13, Buffer<std::uint64_t>(fixed).span());
+    a.set_contact_pattern(Buffer<std::uint64_t>(contact).span());
+    a.accumulate_fixed(Buffer<Mat3>(fixed_values).span());
+    a.accumulate_contact(Buffer<Mat3>(contact_values).span());
+    return a;
+  }
 };
 constexpr Real kDt = 0.1;
 
@@ -71,21 +90,7 @@ std::vector<Vec3> q_blocks(const Eigen::VectorXd& q) {
 
 TEST(Articulations, DirectionIsThatOfTheCoordinatesAndLinksFollow) {
   Problem p;
-  BlockMatrix a;
-  std::vector<std::uint64_t> fixed, contact;
-  std::vector<Mat3> fixed_values, contact_values;
-  for (int i = 0; i < 13; ++i) {
-    for (int j = i; j < 13; ++j) {
-      const Mat3 m = p.A.block<3, 3>(3 * i, 3 * j);
-      (i + j < 9 ? contact : fixed).push_back(block_key(i, j));
-      (i + j < 9 ? contact_values : fixed_values).push_back(m);
-    }
-  }
-  a.set_fixed_pattern(13, Buffer<std::uint64_t>(fixed).span());
-  a.set_contact_pattern(Buffer<std::uint64_t>(contact).span());
-  a.accumulate_fixed(Buffer<Mat3>(fixed_values).span());
-  a.accumulate_contact(Buffer<Mat3>(contact_values).span());
-
+  const BlockMatrix a = p.matrix();
   Articulations articulations(assembly());
   const SystemLayout layout = articulations.set_layout({.strips = {{9, 4, 2}}, .body_blocks = {0, 2, 4}}, 13);
   EXPECT_TRUE(layout.body_blocks.empty());
@@ -108,6 +113,46 @@ TEST(Articulations, DirectionIsThatOfTheCoordinatesAndLinksFollow) {
   EXPECT_EQ(got[7][2], 0);
   for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(rest[i], Vec3(Vec3::Zero()));
   EXPECT_LT((rest[6] - r.segment<3>(0)).norm() + (rest[8] - r.segment<3>(5)).norm(), 1e-10);
+}
+TEST(Articulations, DirectionMindsTheLimitsThatDrivesComeToOnTheWay) {
+  int passed = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    Problem p;
+    p.random.seed(seed);
+    p.b = p.some(39, 1), p.q = p.some(8, 1), p.target = p.some(8, 1);
+    p.b.segment(18, 9).setZero();
+    Eigen::VectorXd drive(8), least(8), most(8);
+    for (int k = 0; k < 8; ++k) {
+      drive[k] = 3 + k, least[k] = -100 * p.some(1, 1).cwiseAbs()(0), most[k] = 100 * p.some(1, 1).cwiseAbs()(0);
+      if (k < 5) continue;
+      p.steps[1].drive = drive.tail(3), p.steps[1].least = least.tail(3), p.steps[1].most = most.tail(3);
+    }
+    p.steps[0].drive = drive.head(5), p.steps[0].least = least.head(5), p.steps[0].most = most.head(5);
+    Articulations articulations(assembly());
+    const SystemLayout layout = articulations.set_layout({.strips = {{9, 4, 2}}, .body_blocks = {0, 2, 4}}, 13);
+    articulations.begin(p.steps, p.targets(), kDt);
+    LinearSolver linear({.linear = LinearKind::cholesky}, layout);
+    Buffer<Vec3> points(std::vector<Vec3>(13, Vec3::Zero())), right(blocks_of(p.b)), x(std::vector<Vec3>(13, Vec3::Zero()));
+    const Buffer<Vec3> q(q_blocks(p.q));
+    const BlockMatrix a = p.matrix();
+    ASSERT_TRUE(articulations.solve(linear, a, points.span(), q.span(), true, right.span(), x.span()).converged);
+    const std::vector<Vec3> got = x.download();
+    Eigen::VectorXd d(20);
+    d << got[6], got[7].head<2>(), got[8], got[9], got[10], got[11], got[12];
+
+    // The gradient of the model at its minimum is zero, whatever the way there.
+    Eigen::VectorXd gradient = p.T.transpose() * (p.A * p.T * d - p.b);
+    gradient.head(8) += p.M.topLeftCorner(8, 8) * (d.head(8) + p.q - p.target) / (kDt * kDt);
+    for (int k = 0; k < 8; ++k) {
+      const auto force = [&](Real ahead) { return std::clamp(drive[k] * ahead / (kDt * kDt), least[k], most[k]); };
+      const Real before = force(p.q[k] - p.target[k]), after = force(d[k] + p.q[k] - p.target[k]);
+      gradient[k] += after;
+      const auto limited = [&](Real f) { return f == least[k] || f == most[k]; };
+      passed += before != after && (limited(before) || limited(after)) ? 1 : 0;
+    }
+    EXPECT_LT(gradient.norm(), 1e-8 * p.b.norm()) << seed;
+  }
+  EXPECT_GT(passed, 20) << "what is to be shown occurs";
 }
 TEST(Articulations, EnergyIsTheKineticTerm) {
   Problem p;
