@@ -68,11 +68,8 @@ class Coordinates {
   /// @param body_block   [bodies] first block of each, -1 if it is fixed
   /// @param body_centre  [bodies] vertex at the centre of mass of each, -1 if it is fixed
   /// @param q_block      first block of the articulations, which are consecutive
-  Coordinates(const std::vector<VertexOwner>& owner,
-              const std::vector<Vec3>& local,
-              const std::vector<int>& body_block,
-              const std::vector<int>& body_centre,
-              int q_block)
+  Coordinates(const std::vector<VertexOwner>& owner, const std::vector<Vec3>& local, const std::vector<int>& body_block,
+              const std::vector<int>& body_centre, int q_block)
       : owner_(owner), local_(local), body_block_(body_block), body_centre_(body_centre), q_block_(q_block) {}
   Span<const VertexOwner> owner() const { return owner_.span(); }
   /// to = from moved by `step` times the direction [blocks] m and rad. Fixed things keep what `to` has.
