@@ -63,8 +63,8 @@ struct BlockPoints {
 /// What moves the vertices, as long as no cluster loses a member.
 class Coordinates {
  public:
-  /// @param owner       [nv]
-  /// @param local       [nv] m, in frame B
+  /// @param owner        [nv]
+  /// @param local        [nv] m, in frame B
   /// @param body_block   [bodies] first block of each, -1 if it is fixed
   /// @param body_centre  [bodies] vertex at the centre of mass of each, -1 if it is fixed
   /// @param q_block      first block of the articulations, which are consecutive

@@ -5,7 +5,7 @@
 
 namespace tape {
 /// Objects that must take steps of one length: those that candidates connect, directly or through others, those that one rigid body or
-/// articulation moves, and those that springs tie. Objects that cannot move connect nothing. Host only.
+/// articulation moves, what rides a body and that body, and those that springs tie. Objects that cannot move connect nothing. Host only.
 class ObjectGroups {
  public:
   explicit ObjectGroups(const SurfaceMesh& mesh);

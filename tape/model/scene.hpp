@@ -39,7 +39,7 @@ struct ContactParams {
   Real kappa = 1e4;
   Real guard = 0.5;
   Real ccd_gap = 0.2;
-  Real margin = 1;
+  Real margin = 0.5;
   Real max_move = 0.05;
   template <class F>
   void fields(F&& f) {

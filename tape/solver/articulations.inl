@@ -303,6 +303,7 @@ inline void Articulations::pass_limits(LinearSolver& linear, int inertia, Linear
     Vector bend = -rest;
     bend.segment(first, count) -= force + slope.cwiseProduct(turn);
     const auto rise = [&, at = d.dot(rest), by = d.dot(bend)](Real t) { return at + t * by + turn.dot(drives.force(ahead + t * turn)); };
+    if (!(rise(0) < 0)) break;  // as near to the minimum as the linear solver sees
     Real t = 1;
     if (rise(1) > 0)
       for (Real low = 0, high = 1; high - low > 1e-12; (rise(t) > 0 ? high : low) = t) t = (low + high) / 2;
@@ -315,7 +316,9 @@ inline void Articulations::pass_limits(LinearSolver& linear, int inertia, Linear
     matrix_.accumulate_fixed(fixed_.values.span());
     const LinearReport again = linear.solve(matrix_, points_.span(), right_.span(), solution_.span());
     report.iterations += again.iterations;
-    if (again.negative_curvature) break;
+    report.converged = report.converged && again.converged;
+    report.negative_curvature = again.negative_curvature;
+    if (again.negative_curvature) return;
     end = articulations::in_line(solution_.download());
   }
   solution_.upload(articulations::in_blocks(x));

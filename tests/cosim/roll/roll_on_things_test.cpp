@@ -87,6 +87,22 @@ TEST(RollOnThings, UnwindsAsItFalls) {
   EXPECT_NEAR(-travelled(s).z(), way, 0.015 * way) << "peeling takes a hundredth";
 }
 
+TEST(LongRollOnThings, PaysOutAsTheFullShellDoes) {
+  Simulation full(scene("payout", {"model=coh-f"})), reduced(scene("payout", {"model=coh-r"}));
+  full.check_intersections = reduced.check_intersections = false;
+  full.step(), reduced.step();
+  const Real at_first = boundary(reduced), row = winding(full).cell;
+  for (int k = 0; k < 180; ++k) {
+    full.step(), reduced.step();
+    Real apart = 0;  // of the free tape
+    for (std::size_t v = 0; v < reduced.state().x.size(); ++v)
+      if ((*reduced.state().clusters[0].distance)[v] == 0) apart = std::max(apart, (full.state().x[v] - reduced.state().x[v]).norm());
+    EXPECT_LT(apart, 2 * row) << "step " << k << ": rows let go one by one, not in the same steps";
+  }
+  EXPECT_TRUE(full.broken.empty() && reduced.broken.empty());
+  EXPECT_LT(boundary(reduced), at_first - 5 * row) << "rows have been let go";
+}
+
 TEST(LongRollOnThings, BetweenPadsItIsLiftedAndRolled) {
   Simulation s(scene("roll_pinched", {"roll.turns=2"}));
   s.run_to(2.5);

@@ -199,7 +199,7 @@ TEST(SettledRoll, TurnsFarInAStepInAFewNewtonIterations) {  // on chords its fir
     for (int k = 0; k < 5; ++k) {
       const StepReport report = stepper->step(state);
       ASSERT_TRUE(report.ok) << report.failure;
-      EXPECT_LE(report.newton, 10) << model << ", step " << k << ", on chords it takes 20 to 25";
+      EXPECT_LE(report.newton, 8) << model << ", step " << k << ": the shell on chords takes 20 to 25, the cluster on straight ways 11";
     }
   }
 }

@@ -122,11 +122,8 @@ TEST(Articulations, DirectionMindsTheLimitsThatDrivesComeToOnTheWay) {
     p.b = p.some(39, 1), p.q = p.some(8, 1), p.target = p.some(8, 1);
     p.b.segment(18, 9).setZero();
     Eigen::VectorXd drive(8), least(8), most(8);
-    for (int k = 0; k < 8; ++k) {
-      drive[k] = 3 + k, least[k] = -100 * p.some(1, 1).cwiseAbs()(0), most[k] = 100 * p.some(1, 1).cwiseAbs()(0);
-      if (k < 5) continue;
-      p.steps[1].drive = drive.tail(3), p.steps[1].least = least.tail(3), p.steps[1].most = most.tail(3);
-    }
+    for (int k = 0; k < 8; ++k) drive[k] = 3 + k, least[k] = -100 * p.some(1, 1).cwiseAbs()(0), most[k] = 100 * p.some(1, 1).cwiseAbs()(0);
+    p.steps[1].drive = drive.tail(3), p.steps[1].least = least.tail(3), p.steps[1].most = most.tail(3);
     p.steps[0].drive = drive.head(5), p.steps[0].least = least.head(5), p.steps[0].most = most.head(5);
     Articulations articulations(assembly());
     const SystemLayout layout = articulations.set_layout({.strips = {{9, 4, 2}}, .body_blocks = {0, 2, 4}}, 13);
