@@ -286,7 +286,8 @@ inline LinearReport Articulations::solve(LinearSolver& linear, const BlockMatrix
 
 /// solution_ is the minimum of Newton's parabola, in which each drive goes on as it does where the unknowns are. Takes it to the minimum of
 /// what is a parabola between the drives' limits: Newton's method again, with an exact line search. The gradient without drives,
-/// rest = H x - b, needs no product with H: of an update d that solves (H + S) d = -(rest + f), H d = -f - S d - rest.
+/// rest = H x - b, needs no product with H: of an update d that solves (H + S) d = -(rest + f), H d = -f - S d - rest. Each update lowers
+/// the model, so that what kMost of them reach is a direction too.
 inline void Articulations::pass_limits(LinearSolver& linear, int inertia, LinearReport& report) {
   constexpr int kMost = 20;
   using Vector = Eigen::VectorXd;
