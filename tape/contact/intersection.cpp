@@ -82,27 +82,31 @@ Intersections find_intersections(const SurfaceMesh& mesh, const std::vector<Vec3
   const on_cpu::Buffer<int> stored_ids(ids);
   tree.build(stored.span(), stored_ids.span());
 
-  Intersections found;
-  std::vector<int> met;
-  for (std::size_t i = 0; i < mesh.edges.size(); ++i) {
-    const auto& e = mesh.edges[i].v;
-    if (alone(e[0])) continue;
-    const int carrier = carriers.edge[i];
+  std::vector<std::vector<int>> met(mesh.edges.size());  // triangles
+  on_cpu::parallel_for(static_cast<int>(met.size()), [&](int i) {
+    const auto& e = mesh.edges[static_cast<std::size_t>(i)].v;
+    if (alone(e[0])) return;
+    const int carrier = carriers.edge[static_cast<std::size_t>(i)];
     const Vec3 &p = at(x, e[0]), &q = at(x, e[1]);
-    met.clear();
+    std::vector<int>& triangles = met[static_cast<std::size_t>(i)];
     tree.view().visit(query_box(box_of(x, e), 0, carrier == on_cpu::detail::kFixed), [&](int j) {
       const auto& t = mesh.triangles[static_cast<std::size_t>(j)].v;
       const bool shared = std::ranges::any_of(t, [&](int v) { return v == e[0] || v == e[1]; });
       const bool together = carrier != on_cpu::detail::kFree && carrier == carriers.triangle[static_cast<std::size_t>(j)];
       if (!shared && !together && !mesh.kept_apart(object(e[0]), object(t[0])) &&
           segment_meets_triangle(p, q, at(x, t[0]), at(x, t[1]), at(x, t[2])))
-        met.push_back(j);
+        triangles.push_back(j);
     });
-    std::ranges::sort(met);
-    for (int j : met) {
+    std::ranges::sort(triangles);
+  });
+
+  Intersections found;
+  for (std::size_t i = 0; i < met.size(); ++i) {
+    for (int j : met[i]) {
       if (found.count++ >= keep) continue;
+      const auto& e = mesh.edges[i].v;
       const auto& t = mesh.triangles[static_cast<std::size_t>(j)].v;
-      found.first.push_back({static_cast<int>(i), j, meeting_point(p, q, at(x, t[0]), at(x, t[1]), at(x, t[2]))});
+      found.first.push_back({static_cast<int>(i), j, meeting_point(at(x, e[0]), at(x, e[1]), at(x, t[0]), at(x, t[1]), at(x, t[2]))});
     }
   }
   return found;

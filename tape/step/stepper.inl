@@ -27,10 +27,10 @@ struct Negate {
   Span<Vec3> out;
   TAPE_HD void operator()(int i) const { out[i] = -in[i]; }
 };
-/// Largest component [m] of the move of a vertex over a whole path.
+/// Largest component [m] of the move of a vertex.
 struct Travel {
-  PathView paths;
-  TAPE_HD Real operator()(int v) const { return (paths[v].at(1) - paths.x[v]).cwiseAbs().maxCoeff(); }
+  Span<const Vec3> from, to;
+  TAPE_HD Real operator()(int v) const { return (to[v] - from[v]).cwiseAbs().maxCoeff(); }
 };
 /// Bound [m] on the length of the way of a vertex.
 struct Way {
@@ -454,7 +454,8 @@ class SideStepper final : public Stepper {
       ++report.newton;
       if (!find_direction(report)) return false;
       const Real slope = -reduce(direction_.size(), 0.0, Dot{right_.span(), direction_.span()}, Plus{});
-      const Real moved = reduce(now_.x.size(), 0.0, stepping::Travel{coordinates_->paths(now_, direction_.span())}, Larger{});
+      coordinates_->move(now_, direction_.span(), 1, trial_);
+      const Real moved = reduce(now_.x.size(), 0.0, stepping::Travel{now_.x.span(), trial_.x.span()}, Larger{});
       if (!std::isfinite(moved) || !std::isfinite(slope))
         return fail(report, "the Newton direction is not finite" + in_brackets(objective_->first_non_finite_derivative()));
       if (moved <= kPositionRoundOff * extent_) return converged_to();  // no update is left that positions could hold
