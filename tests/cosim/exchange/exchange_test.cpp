@@ -67,6 +67,48 @@ TEST(Exchange, AFloatingRobotAndAStripKeepTheirMomentum) {
   EXPECT_GT(given, 0.02 * before.norm());
   EXPECT_GT(both.report.momentum.norm(), 0.02 * before.norm());
 }
+/// A block on three slides, which drives push into a free strip in space and along it. What its momentum along the slides gains by the
+/// tape's forces, beyond what they make the drives add, the strip has lost.
+TEST(Exchange, ARobotOnAFixedBaseReceivesWhatTheStripLoses) {
+  const auto slide = [](const char* name, const Vec3& axis, int parent) {
+    robot::Joint j = joint(name, robot::JointType::prismatic, axis, Vec3::Zero());
+    j.parent = parent;
+    return j;
+  };
+  const robot::Inertial light{0.01, Vec3::Zero(), 1e-6 * robot::Mat3::Identity()};
+  RobotModel model{.name = "gantry"};
+  model.links = {{.name = "rail"},
+                 {.name = "bridge", .inertial = light},
+                 {.name = "trolley", .inertial = light},
+                 box_link("block", 0.02, Vec3(0.012, 0.012, 0.01))};
+  model.joints = {slide("x", Vec3::UnitX(), 0), slide("y", Vec3::UnitY(), 1), slide("z", Vec3::UnitZ(), 2)};
+  RobotScene scene;
+  scene.world.gravity.setZero();
+  scene.robots = {part("gantry", model, Vec3(-0.01, 0.001, 0.0056))};
+  scene.robots[0].params.drives = {{.kp = 200, .kd = 4}, {.kp = 200, .kd = 4}, {.kp = 200, .kd = 4}};
+  scene.robots[0].motions = {stand("x", 0.01), stand("y", 0.002), stand("z", -0.006)};
+  constexpr Real kStep = 0.005;
+  Coupled both(free_strip(kStep, 1e-9), scene);
+  const auto momentum = [&](const robot::World& world) -> Vec3 {
+    return world.generalized_momentum(0) - kStep * world.drive_effort(0);  // the masses that move along each slide are always the same
+  };
+  Vec3 strip = Vec3::Zero();
+  Real across = 0, along = 0;
+  for (int k = 0; k < 12; ++k) {
+    robot::World alone = make_world(scene);
+    if (k > 0) alone.restore(both.bullet().save());
+    ASSERT_TRUE(both.step()) << both.report.failure;
+    const Vec3 lost = strip - both.report.momentum;
+    strip = both.report.momentum;
+    if (k == 0) continue;  // drives are told where to go
+    alone.step(kStep);
+    const Vec3 received = momentum(both.bullet()) - momentum(alone);
+    ASSERT_LE((received - lost).norm(), 1e-9 * lost.norm() + 1e-16) << k;
+    across = std::fmax(across, lost.z()), along = std::fmax(along, std::fabs(lost.x()));
+  }
+  EXPECT_GT(across, 1e-6) << "[N s]";
+  EXPECT_GT(along, 1e-6) << "[N s]";
+}
 TEST(Exchange, BulletAloneGoesItsWayWhereNoTapeIs) {
   RobotScene far = two_links(Vec3(0.05, 0, 0.3), {{.kp = 0.1, .kd = 1e-4}});
   far.robots[0].motions = {stand("hinge", 0.4)};
