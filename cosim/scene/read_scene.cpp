@@ -265,6 +265,8 @@ class SceneReader {
       if (out.bond.floor >= out.bond.reach) entry["bond_floor"].fail("not below bond_reach: no pair would ever bond");
     }
     if (law == tape::AdhesionLaw::per_pair || roll) {
+      if (const Reader eta = entry["eta"]; eta && eta.number(Range::any(), "s") == 0)
+        eta.fail("debonding has the rate 1/eta: 0 is none (allowed: > 0 s)");
       entry.read(out.pair);
       if (out.pair.beta0 == 0 && out.pair.gamma == 0) entry["gamma"].fail("0 with beta0 = 0: no pair would ever engage");
       // a_n is (2 drop)^2 at most, and slip costs C_t: below W neither debonds anything.
