@@ -259,7 +259,7 @@ FileAndPlan along_file(const Reader& entry, const std::filesystem::path& scene, 
                 throw robot::InputError("joint " + way.joints[k] + " starts at " + tape::to_text(to) +
                                         " in the file, and is told to be at " + tape::to_text(from) + " (allowed: up to " +
                                         tape::to_text(kNear) + " from it): move it there before");
-            return way;
+            return robot::JointTrajectory(way);
           }};
 }
 

@@ -176,7 +176,7 @@ Articulation::Vec6 Articulation::joint_motion(int k) const {
 }
 
 MatX Articulation::jacobian(int link, const Vec3& p) const {
-  const MatX of_joints = robot::jacobian(*model_, X_WL_, link, p);
+  MatX of_joints = robot::jacobian(*model_, X_WL_, link, p);
   if (fixed_base_) return of_joints;
   MatX J = MatX::Identity(6, dof());
   J.block<3, 3>(0, 3) = -skew(p - X_WL(0).translation());

@@ -4,7 +4,7 @@
 #include <limits>
 
 namespace robot {
-DrivenRobot::DrivenRobot(int index, std::shared_ptr<const RobotModel> model, const RobotParams& params)
+DrivenRobot::DrivenRobot(int index, const std::shared_ptr<const RobotModel>& model, const RobotParams& params)
     : drive_impulse(VecX::Zero(static_cast<Eigen::Index>(model->joints.size()))),
       friction_impulse(drive_impulse),
       limit_impulse(drive_impulse),

@@ -11,7 +11,7 @@ namespace robot {
 /// A robot with its drives, and how one substep of length h changes its velocity (README.md).
 class DrivenRobot {
  public:
-  DrivenRobot(int index, std::shared_ptr<const RobotModel> model, const RobotParams& params);
+  DrivenRobot(int index, const std::shared_ptr<const RobotModel>& model, const RobotParams& params);
 
   Articulation& body() { return body_; }
   const Articulation& body() const { return body_; }

@@ -145,7 +145,7 @@ Physics::~Physics() {
   }
 }
 
-DrivenRobot& Physics::add(std::shared_ptr<const RobotModel> model, const RobotParams& params) {
+DrivenRobot& Physics::add(const std::shared_ptr<const RobotModel>& model, const RobotParams& params) {
   const int index = static_cast<int>(robots_.size());
   auto robot = std::make_unique<DrivenRobot>(index, model, params);
   for (const auto& [a, b] : model->may_overlap) apart.insert(std::minmax(LinkId(index, a), LinkId(index, b)));

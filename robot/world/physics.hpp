@@ -14,7 +14,7 @@ class Physics {
  public:
   explicit Physics(const WorldParams& params);
   ~Physics();
-  DrivenRobot& add(std::shared_ptr<const RobotModel> model, const RobotParams& params);
+  DrivenRobot& add(const std::shared_ptr<const RobotModel>& model, const RobotParams& params);
   void substep(Real h, const std::vector<VecX>& tau);
 
   std::vector<std::unique_ptr<DrivenRobot>>& robots() { return robots_; }

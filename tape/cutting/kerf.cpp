@@ -99,7 +99,7 @@ std::string flaw(const StripMesh& mesh, int first, const Quality& least) {
     for (int k = 0; k < 3; ++k)
       if (!edges.insert({t[k], t[(k + 1) % 3]}).second) return "triangles would overlap at " + point_text(mesh.rest[t[k]]);
   for (int t = first; t < static_cast<int>(mesh.triangles.size()); ++t)
-    if (const std::string reason = flaw_of(corners(mesh, t), least); !reason.empty()) return reason;
+    if (std::string reason = flaw_of(corners(mesh, t), least); !reason.empty()) return reason;
   std::vector<char> starts(mesh.rest.size(), 0);
   for (const auto& [a, b] : edges)
     if (!edges.contains({b, a}) && std::exchange(starts[a], 1))
@@ -176,7 +176,7 @@ class Cutter {
     const Real reach = params_.edge_reach * cell_;
     if (inside(end + reach * along)) return end;
     for (Real more : {0.0, reach, reach + width_ / 2, reach + width_}) {
-      const Vec2 moved = end + more * along;
+      Vec2 moved = end + more * along;
       if (!inside(moved) && !inside(moved - across) && !inside(moved + across)) return moved;
     }
     return end + (reach + 2 * width_) * along;

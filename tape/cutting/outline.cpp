@@ -223,8 +223,8 @@ class OutlineMaker {
     }
     loop = std::move(divided);
   }
-  void fill(std::vector<int>& loop, int last, Vec2 end) {
-    const Vec2 start = point(last);
+  void fill(std::vector<int>& loop, int last, const Vec2& to) {
+    const Vec2 start = point(last), end = to;  // copies: add() may move the points
     const int parts = std::max(1, static_cast<int>(std::round((end - start).norm() / limits_.spacing - 0.1)));
     for (int k = 1; k < parts; ++k) loop.push_back(add(start + (end - start) * k / parts, -1));
   }
