@@ -476,7 +476,9 @@ class SideStepper final : public Stepper {
       if (!line_search(slope, report, at_round_off)) return false;
       overshot_ = report.halvings > halvings;
       const Real share = (before - energy_.sum) / -slope;
-      const bool foreseen = -slope <= 1e3 * round_off || as_foreseen(share, moved, last);
+      const bool measurable = -slope > 1e3 * round_off;
+      const bool foreseen = !measurable || as_foreseen(share, moved, last);
+      if (measurable && foreseen && mode_ == HessianMode::exact) left = 3 * kAsForeseen * moved;
       if (at_round_off || (converged && foreseen && moved <= objective_->accuracy_to_judge(view(now_)))) return converged_to();
       if (!foreseen && !overshot_ && limit_ == 1 && share > kOpening && go_on()) previous = 0;
     }
@@ -513,10 +515,11 @@ class SideStepper final : public Stepper {
 
   /// Whether the objective was along the last update what Newton's parabola says: then the energy fell by the share 1/2 of the slope. On
   /// its way out of the barrier, which ends like a fourth power, an update is a third of the way to the edge, however light the push is
-  /// by then: a small update of share 0.6 or more, and gravity still to come. A projected Hessian is too stiff and converges by a rate,
-  /// which makes the share (1 + rate)/2: there the updates must shrink by that rate, and what is left of them must be small.
+  /// by then: a small update of share 0.6 or more, and gravity still to come. With a curvature H and a third derivative T along an update d
+  /// the share is 1/2 - T d/(6 H), and T d^2/(2 H) is left: up to 3 kAsForeseen d. A projected Hessian is too stiff and converges by a
+  /// rate, which makes the share (1 + rate)/2: there the updates must shrink by that rate, and what is left of them must be small.
   bool as_foreseen(Real share, Real moved, Real previous) const {
-    if (std::fabs(share - 0.5) <= 0.05) return true;
+    if (std::fabs(share - 0.5) <= kAsForeseen) return true;
     const Real rate = 2 * share - 1;
     return mode_ == HessianMode::projected && rate < 1 && moved <= (rate + 0.1) * previous &&
            moved * rate / (1 - rate) <= world_.setup.newton.velocity_tol * dt_;
@@ -698,6 +701,7 @@ class SideStepper final : public Stepper {
   Buffer<BodyMass> body_mass_;
   Buffer<Adhesion> adhesion_;
   static constexpr Real kPositionRoundOff = 1e-15, kEnergyRoundOff = 4e-15;
+  static constexpr Real kAsForeseen = 0.05;     // by which the share of the slope that E falls by may be off
   HessianMode mode_ = HessianMode::exact;       // of the last direction
   EnergySum energy_;                            // at now_
   Real dt_ = 0, moving_mass_ = 0, extent_ = 0;  // moving_mass_: of the tape, if there is any; extent_: largest coordinate [m]

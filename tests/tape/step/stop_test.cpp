@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "tape/model/primitives.hpp"
 #include "tests/support/simulation.hpp"
 using namespace tape;
@@ -22,4 +25,28 @@ TEST(Stop, WhatLeavesContactFallsAtEveryTolerance) {
       for (const Vec3& p : s.state().x) EXPECT_LT(p.z(), -0.99 * fallen) << tolerance << " m/s, " << to_text(mode);
     }
   }
+}
+
+/// A strip falls on a drum and wraps around it. What a step says that it has left to go is no less than what a much tighter tolerance
+/// changes from the same state, and not many times as much.
+TEST(Stop, TheEstimateCoversWhatATighterToleranceChanges) {
+  auto setup = test::strip_setup(test::flat_strip(0.06, 4, Vec3(-0.028, 0, 0.0103)));
+  test::add_body(setup, "drum", cylinder_mesh(0.01, 0.04, 48, 1), Motion::fixed, Vec3::Zero()).pose.rotation << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  test::Simulation loose(setup);
+  setup.newton.velocity_tol = 1e-8;
+  test::Simulation tight(setup);
+  std::vector<Real> ratio;
+  for (int k = 0; k < 40; ++k) {
+    tight.state() = loose.state();
+    loose.step(), tight.step();
+    Real changed = 0;
+    for (std::size_t v = 0; v < loose.state().x.size(); ++v)
+      changed = std::max(changed, (loose.state().x[v] - tight.state().x[v]).cwiseAbs().maxCoeff());
+    if (changed > 1e-11) ratio.push_back(loose.report().stop_error_estimate / changed);
+  }
+  EXPECT_TRUE(loose.broken.empty() && tight.broken.empty());
+  ASSERT_GT(ratio.size(), 30u);
+  std::ranges::sort(ratio);
+  EXPECT_GT(ratio.front(), 0.5);
+  EXPECT_LT(ratio[ratio.size() / 2], 30);
 }
