@@ -442,7 +442,7 @@ TEST_F(ReplayCommand, BadEpisodesAreRefusedByName) {
     std::function<void(const std::string&)> make;
     std::vector<std::string> says;
   };
-  const auto edited = [](std::vector<std::pair<std::string, std::string>> texts) {
+  const auto edited = [](const std::vector<std::pair<std::string, std::string>>& texts) {
     return [=](const std::string& name) { variant(name, nothing, texts); };
   };
   const std::vector<Bad> all = {

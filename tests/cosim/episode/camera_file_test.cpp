@@ -15,7 +15,7 @@ PlacedCamera load(const std::string& text) {
   const fs::path file = fs::temp_directory_path() / ("camera_file_test_" + std::to_string(getpid()) + ".yaml");
   std::ofstream(file) << text;
   try {
-    const PlacedCamera camera = load_camera(file);
+    PlacedCamera camera = load_camera(file);
     fs::remove(file);
     return camera;
   } catch (...) {

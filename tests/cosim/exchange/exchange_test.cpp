@@ -201,7 +201,7 @@ TEST(Exchange, APadPressesTheTapeWithItsDrivesForce) {
 /// A ram on a slide, a strip and a plate on a slide of its own, without weight: the ram pushes with 5 N.
 struct Ram {
   std::unique_ptr<Coupled> both;
-  explicit Ram(double mass, robot::Joint slide) {
+  explicit Ram(double mass, const robot::Joint& slide) {
     const auto along = [](const char* name, double kilograms, const Vec3& size, const robot::Joint& j) {
       RobotModel model{.name = name};
       model.links = {{.name = "rail"}, box_link("block", kilograms, size)};

@@ -112,7 +112,7 @@ TEST(Trajectory, SpeedLimitsComeFromTheModel) {
 }
 
 TEST(Trajectory, WhatCannotBeDrivenIsRefusedByName) {
-  const auto path = [](std::vector<VecX> waypoints, std::vector<Real> times) {
+  const auto path = [](const std::vector<VecX>& waypoints, const std::vector<Real>& times) {
     return [=] { trajectory_at(kJoints, waypoints, times, limits(1, 0.5, 10, 10)); };
   };
   // 15/8 * 0.4 / 1 = 0.75 rad/s where 0.5 is allowed, for which it needs 1.5 s

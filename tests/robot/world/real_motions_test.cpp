@@ -119,7 +119,7 @@ TEST(RealMotions, TeleoperationOfAG1PointsTheStationsArmsWhereItsOwnPointed) {
     EXPECT_NEAR(path.end(), 478 / 30., 1e-4);
     for (const bool left : {true, false}) {
       std::vector<DrivenByColumn> own;  // the G1's angles, as they are
-      for (DrivenByColumn joint : g1_arm(kind, left)) own.push_back({joint.joint, joint.column});
+      for (const DrivenByColumn& joint : g1_arm(kind, left)) own.push_back({joint.joint, joint.column});
       const JointTrajectory g1 = read_table(teleoperation(), station, "timestamp", own, {.slack = 9});
       const std::string arm = left ? "left_arm_" : "right_arm_";
       for (std::size_t row = 0; row < g1.knots.size(); row += 50) {
