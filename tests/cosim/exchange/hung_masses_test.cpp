@@ -72,17 +72,17 @@ Real stretch_under(Real mass) {
 }
 
 /// A hook draws a mass up by the strip between them: it never diverges, and comes to hang below the hook by the strip's stretch.
-void lift(Real mass, Real dt, Real duration) {
+void lift(Real mass, Real dt) {
   SCOPED_TRACE(std::to_string(mass) + " kg, " + std::to_string(dt) + " s");
   Hung lifted(Hung::weight_and_hook(mass), Hung::hooked_strip(dt));
   const Real before = lifted.height(), hook_before = lifted.height(1, 1);
   Real pull = 0, place = 0, highest = 0;
   int steps = 0;
-  while (lifted.both.state.time < duration) {
+  while (lifted.both.state.time < 3) {
     ASSERT_TRUE(lifted.both.step()) << lifted.both.report.failure;
     const Real risen = lifted.height() - before, hook = lifted.height(1, 1) - hook_before;
     highest = std::max(highest, risen);
-    if (lifted.both.state.time < duration - 1) continue;
+    if (lifted.both.state.time < 2) continue;
     pull += lifted.both.link(0, 0).hold.force.z(), place += risen - hook, ++steps;
   }
   EXPECT_NEAR(pull / steps, mass * 9.81, 0.05 * mass * 9.81);
@@ -115,8 +115,8 @@ TEST(HungMasses, RestWhereTheStripCarriesThemAtAnyStep) {
 }
 TEST(HungMasses, FollowTheirDriveThroughTheStripAtAnyStep) {
   for (const Real mass : {0.001, 0.3, 10.0})
-    for (const Real dt : {1.0 / 30, 0.01}) lift(mass, dt, 3);
+    for (const Real dt : {1.0 / 30, 0.01}) lift(mass, dt);
 }
 TEST(LongHungMasses, FollowTheirDriveInStepsOfAMillisecondToo) {
-  for (const Real mass : {0.001, 0.3, 10.0}) lift(mass, 0.001, 3);
+  for (const Real mass : {0.001, 0.3, 10.0}) lift(mass, 0.001);
 }

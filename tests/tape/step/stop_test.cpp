@@ -27,8 +27,8 @@ TEST(Stop, WhatLeavesContactFallsAtEveryTolerance) {
   }
 }
 
-/// A strip falls on a drum and wraps around it. What a step says that it has left to go is no less than what a much tighter tolerance
-/// changes from the same state, and not many times as much.
+/// A strip falls on a drum and wraps around it. What a step says that it has left to go is at least half of what a much tighter tolerance
+/// changes from the same state, and not many times as much (measured 0.8 at least, 14 in the median; |dx| rho/(1 - rho): 0.16 and 100).
 TEST(Stop, TheEstimateCoversWhatATighterToleranceChanges) {
   auto setup = test::strip_setup(test::flat_strip(0.06, 4, Vec3(-0.028, 0, 0.0103)));
   test::add_body(setup, "drum", cylinder_mesh(0.01, 0.04, 48, 1), Motion::fixed, Vec3::Zero()).pose.rotation << 1, 0, 0, 0, 0, -1, 0, 1, 0;
