@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <limits>
 
 #include "tape/contact/ccd.hpp"
 #include "tape/contact/surface.hpp"
@@ -270,6 +271,27 @@ struct FindPartners {
     count[o] = n;
   }
 };
+/// For each partner of an object the box of that part of it which the object's box meets. A vertex of no triangle has no area, and no
+/// barrier.
+struct BoxMeetings {
+  SurfaceView s;
+  Sight sight;
+  Span<const int> first_triangle;  ///< [objects + 1]
+  Span<const int> partners, count;
+  Span<const Box> boxes;  ///< [objects]
+  Span<Box> meetings;     ///< [objects objects] as partners; of those that do not meet one that meets nothing
+  TAPE_HD void operator()(int i) const {
+    const int o = i / s.objects;
+    if (i % s.objects >= count[o]) return;
+    const Real inf = std::numeric_limits<Real>::infinity();
+    Box meeting{Vec3::Constant(inf), Vec3::Constant(-inf)};
+    for (int t = first_triangle[partners[i]]; t < first_triangle[partners[i] + 1]; ++t) {
+      const Box box = sight.box(s, s.triangles[t]);
+      if (meet(box, boxes[o])) meeting = joined(meeting, box);
+    }
+    meetings[i] = meeting;
+  }
+};
 enum class Part { vertex, edge, triangle };
 TAPE_HD inline int first_vertex(const SurfaceView& s, Part part, int id) {
   return part == Part::vertex ? id : part == Part::edge ? s.edges[id].v[0] : s.triangles[id].v[0];
@@ -294,10 +316,10 @@ struct FlagNear {
   Sight sight;
   Part part;
   bool awake;
-  Span<const int> list, partners, count;
-  Span<const Box> boxes;  ///< [objects]
-  Span<const char> self;  ///< [objects] 1: touches itself, from the world's view
-  Span<int> flag;         ///< [list + 1], the last stays 0
+  Span<const int> list, count;
+  Span<const Box> meetings;  ///< [objects objects]
+  Span<const char> self;     ///< [objects] 1: touches itself, from the world's view
+  Span<int> flag;            ///< [list + 1], the last stays 0
   TAPE_HD void operator()(int k) const { flag[k] = k < list.size && near(list[k]) ? 1 : 0; }
 
  private:
@@ -313,7 +335,7 @@ struct FlagNear {
     if (count[o] == 0) return false;
     const Box box = this->box(id);
     for (int k = 0; k < count[o]; ++k)
-      if (meet(box, boxes[partners[o * s.objects + k]])) return true;
+      if (meet(box, meetings[o * s.objects + k])) return true;
     return false;
   }
 };

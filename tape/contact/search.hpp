@@ -89,10 +89,11 @@ class ContactSearch {
   Buffer<Box> object_boxes_;      ///< [objects]
   Buffer<int> partners_;          ///< [objects objects] of each object, that it may touch from the world's view
   Buffer<int> partner_count_;     ///< [objects]
+  Buffer<Box> meetings_;          ///< [objects objects] where each meets its partners
   detail::Primitives looked_at_;  ///< of objects with partners or a frame
   struct {
     detail::Primitives asking, rest, outside, followers;
-  } in_company_;  ///< what may touch one of the partners; asking: and all that is awake and seen from a frame
+  } in_company_;  ///< what may touch a partner where it meets the object; asking: and all that is awake and seen from a frame
   Planted own_trees_, asleep_trees_, rest_trees_, outside_trees_, follower_trees_;
   Buffer<Lanes> boxes_;
   detail::Hits vertex_hits_, sleeper_hits_, edge_hits_;

@@ -124,6 +124,9 @@ inline void ContactSearch::find_company() {
   const Span<const int> first = surface_.first_vertex.span();
   parallel_for(s.objects, detail::BoxObjects{s, sight, first, object_boxes_.span()});
   parallel_for(s.objects, detail::FindPartners{s, first, object_boxes_.span(), partners_.span(), partner_count_.span()});
+  meetings_.resize(partners_.size());
+  parallel_for(meetings_.size(), detail::BoxMeetings{s, sight, surface_.first_triangle.span(), partners_.span(), partner_count_.span(),
+                                                     object_boxes_.span(), meetings_.span()});
   const auto keep = [&](const Buffer<int>& all, Buffer<int>& out, const auto& kernel) {
     kept_.resize(all.size() + 1);
     parallel_for(kept_.size(), kernel(all.span(), kept_.span()));
@@ -140,9 +143,7 @@ inline void ContactSearch::find_company() {
   const auto near = [&](const detail::Primitives& all, bool awake, detail::Primitives& out) {
     const auto list = [&](detail::Part part, const Buffer<int>& from, Buffer<int>& to) {
       keep(from, to, [&](Span<const int> ids, Span<int> flag) {
-        return detail::FlagNear{
-            s,   sight, part, awake, ids, partners_.span(), partner_count_.span(), object_boxes_.span(), surface_.touches_itself.span(),
-            flag};
+        return detail::FlagNear{s, sight, part, awake, ids, partner_count_.span(), meetings_.span(), surface_.touches_itself.span(), flag};
       });
     };
     list(detail::Part::vertex, all.vertices, out.vertices);

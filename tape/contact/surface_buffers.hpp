@@ -92,11 +92,15 @@ struct SurfaceBuffers {
         materials(mesh.materials),
         dhat(dhat_),
         guard(guard_) {
-    std::vector<int> first(mesh.objects.size() + 1, static_cast<int>(mesh.vertices.size()));
-    for (int v = static_cast<int>(mesh.vertices.size()); v-- > 0;)
-      first[static_cast<std::size_t>(mesh.vertices[static_cast<std::size_t>(v)].object)] = v;
-    for (std::size_t o = mesh.objects.size(); o-- > 0;) first[o] = std::min(first[o], first[o + 1]);
-    first_vertex.upload(first);
+    const auto object = [&](int v) { return mesh.vertices[static_cast<std::size_t>(v)].object; };
+    const auto first_of_objects = [&](std::size_t n, const auto& object_of) {
+      std::vector<int> first(mesh.objects.size() + 1, static_cast<int>(n));
+      for (std::size_t i = n; i-- > 0;) first[static_cast<std::size_t>(object_of(i))] = static_cast<int>(i);
+      for (std::size_t o = mesh.objects.size(); o-- > 0;) first[o] = std::min(first[o], first[o + 1]);
+      return first;
+    };
+    first_vertex.upload(first_of_objects(mesh.vertices.size(), [&](std::size_t v) { return object(static_cast<int>(v)); }));
+    first_triangle.upload(first_of_objects(mesh.triangles.size(), [&](std::size_t t) { return object(mesh.triangles[t].v[0]); }));
     for (std::size_t o = 0, n = mesh.objects.size(); o < n; ++o)
       is_outside.push_back(std::any_of(mesh.apart.begin() + static_cast<std::ptrdiff_t>(mesh.apart.empty() ? 0 : o * n),
                                        mesh.apart.begin() + static_cast<std::ptrdiff_t>(mesh.apart.empty() ? 0 : (o + 1) * n),
@@ -179,6 +183,7 @@ struct SurfaceBuffers {
   Buffer<Home> home;                     ///< [frames]
   Buffer<char> member;                   ///< [nv]
   Buffer<int> first_vertex;              ///< [objects + 1] vertices of an object are consecutive
+  Buffer<int> first_triangle;            ///< [objects + 1] and so are its triangles
   Buffer<char> has_frame;                ///< [objects] 1: is seen from one
   Buffer<char> touches_itself;           ///< [objects] 1: and is seen from the world alone
   Buffer<char> apart;                    ///< [objects objects], or empty
