@@ -15,7 +15,8 @@ void visit_columns(const World& world, const std::vector<Phase>& phases, const c
   f("step", row.step), f("time_s", row.time);
   if (!phases.empty()) f("phase", row.phase < 0 ? std::string() : phases[static_cast<std::size_t>(row.phase)].name);
   f("ms", r.wall_ms);
-  f("newton", r.newton), f("linear_iterations", r.linear_iterations), f("halvings", r.halvings), f("substeps", r.substeps);
+  f("newton", r.newton), f("linear_iterations", r.linear_iterations), f("halvings", r.halvings), f("shortened", r.shortened),
+      f("substeps", r.substeps);
   f("hessian_fallbacks", r.hessian_fallbacks), f("stop_error_estimate_m", r.stop_error_estimate), f("last_update_m", r.last_update);
   f("min_gap_m", r.min_gap), f("candidates", r.candidates), f("active_pairs", r.active_pairs), f("searches", r.searches);
   f("max_strain", r.max_strain), f("kinetic_J", r.kinetic);

@@ -29,9 +29,9 @@ EnergyLedger::EnergyLedger(const World& world) : world_(&world) {
 void EnergyLedger::before(const State& state, Real dt) {
   start_ = state;
   close_grips(*world_, start_);
-  target_ = Drive::at(*world_, start_, dt);
+  target_ = Drive::at(*world_, start_, start_.time + dt, dt);
   const std::vector<Vec3> x = vertex_positions(*world_, start_);
-  grip_work_ = grip_energy(*world_, x, target_) - grip_energy(*world_, x, Drive::at(*world_, start_, 0));
+  grip_work_ = grip_energy(*world_, x, target_) - grip_energy(*world_, x, Drive::at(*world_, start_, start_.time, 0));
 }
 
 Real EnergyLedger::body_work(const State& state) const {

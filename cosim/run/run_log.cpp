@@ -9,12 +9,13 @@
 #include "cosim/run/record_clock.hpp"
 #include "tape/contact/intersection.hpp"
 #include "tape/core/stopwatch.hpp"
+#include "tape/step/reduce.hpp"
 
 namespace cosim {
 namespace {
 void record(RunLog& log, const World& world, const State& state, const RunOptions& options) {
   log.checked_states += 1;
-  log.intersections += find_intersections(world.surface, vertex_positions(world, state)).count;
+  log.intersections += find_intersections(world.surface, carry(world, state).owner, vertex_positions(world, state)).count;
   if (options.on_record) options.on_record(state);
 }
 /// Cuts what blades have pressed long enough. @return whether the world has changed

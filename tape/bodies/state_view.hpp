@@ -1,5 +1,6 @@
 #pragma once
 #include "tape/bodies/body_mass.hpp"
+#include "tape/bodies/vertex_fans.hpp"
 #include "tape/bodies/vertex_owner.hpp"
 #include "tape/core/types.hpp"
 #include "tape/model/adhesion.hpp"
@@ -21,7 +22,7 @@ struct StateView {
   Span<const Real> grip_stiffness;  ///< [springs] N/m, 0 while the grip is open
   Span<const Real> mu;              ///< [materials^2] friction by ContactPair::interface
   Span<const Adhesion> adhesion;    ///< [materials^2] by ContactPair::interface
-  Span<const Vec3> normal;          ///< [nv] mean normal of the triangles around a vertex, by area; at the end of a step only
+  VertexFans fans;                  ///< at the end of a step only
 };
 
 /// Ids that an element touches: vertices, or blocks of unknowns for effects with `on_blocks`.

@@ -82,7 +82,7 @@ class Hits {
   template <class Query>
   long long count(int queries, const Query& query) {
     first_.resize(queries), slots_.resize(queries * kSlots);
-    parallel_for(queries, CountHits<Query>{query, slots_.span(), first_.span()});
+    parallel_for(queries, CountHits<Query>{query, slots_.span(), first_.span()}, kFew);
     const long long all = reduce(queries, 0LL, Count{first_.span()}, Plus{});
     if (all <= INT_MAX) exclusive_scan(first_.span());
     return all;
@@ -91,7 +91,7 @@ class Hits {
   template <class Query>
   void emit(const Query& query, Span<ContactPair> pairs) {
     hits_.resize(pairs.size);
-    parallel_for(first_.size(), EmitPairs<Query>{query, slots_.span(), first_.span(), hits_.span(), pairs});
+    parallel_for(first_.size(), EmitPairs<Query>{query, slots_.span(), first_.span(), hits_.span(), pairs}, kFew);
   }
 
  private:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <span>
 
@@ -39,6 +40,37 @@ std::vector<bool> in_company(const SurfaceMesh& mesh, const std::vector<Vec3>& x
   return company;
 }
 
+/// Triangles of one body that has many, or of all the others.
+struct Planted {
+  int carrier = on_cpu::detail::kFree;
+  on_cpu::BoxTree tree;
+};
+template <class Alone>
+std::vector<Planted> plant(const SurfaceMesh& mesh, const std::vector<Vec3>& x, const on_cpu::detail::Carriers& carriers,
+                           const Alone& alone) {
+  constexpr std::size_t kMany = 1000;
+  std::map<int, std::vector<int>> of_carrier;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    if (!alone(mesh.triangles[i].v[0])) of_carrier[std::max(carriers.triangle[i], on_cpu::detail::kFree)].push_back(static_cast<int>(i));
+  std::vector<int>& rest = of_carrier[on_cpu::detail::kFree];
+  for (auto& [carrier, ids] : of_carrier)
+    if (carrier >= 0 && ids.size() < kMany) rest.insert(rest.end(), ids.begin(), ids.end()), ids.clear();
+  std::vector<Planted> out;
+  for (const auto& [carrier, ids] : of_carrier) {
+    if (ids.empty()) continue;
+    std::vector<Lanes> boxes;
+    for (int i : ids) {
+      const auto k = static_cast<std::size_t>(i);
+      boxes.push_back(stored_box(box_of(x, mesh.triangles[k].v), i, carriers.triangle[k] == on_cpu::detail::kFixed));
+    }
+    out.push_back({carrier, {}});
+    const on_cpu::Buffer<Lanes> stored(boxes);
+    const on_cpu::Buffer<int> stored_ids(ids);
+    out.back().tree.build(stored.span(), stored_ids.span());
+  }
+  return out;
+}
+
 /// Where the edge comes closest to the triangle: good enough to find the place.
 Vec3 meeting_point(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 n = (b - a).cross(c - a);
@@ -66,21 +98,15 @@ void require_finite(const std::vector<Vec3>& x, const SurfaceMesh& mesh) {
 }  // namespace
 
 Intersections find_intersections(const SurfaceMesh& mesh, const std::vector<Vec3>& x, int keep) {
-  const on_cpu::detail::Carriers carriers(mesh);
+  return find_intersections(mesh, mesh.owner, x, keep);
+}
+
+Intersections find_intersections(const SurfaceMesh& mesh, const std::vector<VertexOwner>& owner, const std::vector<Vec3>& x, int keep) {
+  const on_cpu::detail::Carriers carriers(mesh, owner);
   const std::vector<bool> company = in_company(mesh, x, carriers);
   const auto object = [&](int v) { return mesh.vertices[static_cast<std::size_t>(v)].object; };
   const auto alone = [&](int v) { return !company[static_cast<std::size_t>(object(v))]; };
-  std::vector<Lanes> boxes;
-  std::vector<int> ids;
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    if (alone(mesh.triangles[i].v[0])) continue;
-    ids.push_back(static_cast<int>(i));
-    boxes.push_back(stored_box(box_of(x, mesh.triangles[i].v), ids.back(), carriers.triangle[i] == on_cpu::detail::kFixed));
-  }
-  on_cpu::BoxTree tree;
-  const on_cpu::Buffer<Lanes> stored(boxes);
-  const on_cpu::Buffer<int> stored_ids(ids);
-  tree.build(stored.span(), stored_ids.span());
+  const std::vector<Planted> trees = plant(mesh, x, carriers, alone);
 
   std::vector<std::vector<int>> met(mesh.edges.size());  // triangles
   on_cpu::parallel_for(static_cast<int>(met.size()), [&](int i) {
@@ -89,14 +115,19 @@ Intersections find_intersections(const SurfaceMesh& mesh, const std::vector<Vec3
     const int carrier = carriers.edge[static_cast<std::size_t>(i)];
     const Vec3 &p = at(x, e[0]), &q = at(x, e[1]);
     std::vector<int>& triangles = met[static_cast<std::size_t>(i)];
-    tree.view().visit(query_box(box_of(x, e), 0, carrier == on_cpu::detail::kFixed), [&](int j) {
+    const auto meets = [&](int j) {
       const auto& t = mesh.triangles[static_cast<std::size_t>(j)].v;
       const bool shared = std::ranges::any_of(t, [&](int v) { return v == e[0] || v == e[1]; });
       const bool together = carrier != on_cpu::detail::kFree && carrier == carriers.triangle[static_cast<std::size_t>(j)];
-      if (!shared && !together && !mesh.kept_apart(object(e[0]), object(t[0])) &&
-          segment_meets_triangle(p, q, at(x, t[0]), at(x, t[1]), at(x, t[2])))
-        triangles.push_back(j);
-    });
+      return !shared && !together && !mesh.kept_apart(object(e[0]), object(t[0])) &&
+             segment_meets_triangle(p, q, at(x, t[0]), at(x, t[1]), at(x, t[2]));
+    };
+    const Lanes query = query_box(box_of(x, e), 0, carrier == on_cpu::detail::kFixed);
+    for (const Planted& planted : trees)
+      if (carrier < 0 || carrier != planted.carrier)
+        planted.tree.view().visit(query, [&](int j) {
+          if (meets(j)) triangles.push_back(j);
+        });
     std::ranges::sort(triangles);
   });
 

@@ -20,6 +20,8 @@ struct Intersections {
 /// for the coordinates as they are: no tolerance.
 /// @param x  [nv] m, finite
 Intersections find_intersections(const SurfaceMesh& mesh, const std::vector<Vec3>& x, int keep = 5);
+/// @param owner  [nv] what carries each vertex, if not as the mesh says: members of a cluster, which form no pair
+Intersections find_intersections(const SurfaceMesh& mesh, const std::vector<VertexOwner>& owner, const std::vector<Vec3>& x, int keep = 5);
 
 /// For messages: "strip edge 4-5 and table triangle 0-1-2 at (0.1, 0.2, 0) m", with vertices numbered within their objects.
 std::string description(const SurfaceMesh& mesh, const Crossing& crossing);

@@ -300,6 +300,7 @@ TAPE_HD inline int first_vertex(const SurfaceView& s, Part part, int id) {
 struct FlagLookedAt {
   SurfaceView s;
   Part part;
+  bool everywhere;  ///< all are
   Span<const int> list, count;
   Span<const char> has_frame, self;  ///< [objects]
   Span<int> flag;                    ///< [list + 1], the last stays 0
@@ -307,7 +308,7 @@ struct FlagLookedAt {
     flag[k] = 0;
     if (k == list.size) return;
     const int o = s.vertices[first_vertex(s, part, list[k])].object;
-    flag[k] = count[o] > 0 || has_frame[o] != 0 || self[o] != 0 ? 1 : 0;
+    flag[k] = everywhere || count[o] > 0 || has_frame[o] != 0 || self[o] != 0 ? 1 : 0;
   }
 };
 /// Primitives that may touch something from the world's view, and with `awake` what is seen from its frame and does not sleep.
@@ -316,11 +317,12 @@ struct FlagNear {
   Sight sight;
   Part part;
   bool awake;
+  bool everywhere;  ///< all may
   Span<const int> list, count;
   Span<const Box> meetings;  ///< [objects objects]
   Span<const char> self;     ///< [objects] 1: touches itself, from the world's view
   Span<int> flag;            ///< [list + 1], the last stays 0
-  TAPE_HD void operator()(int k) const { flag[k] = k < list.size && near(list[k]) ? 1 : 0; }
+  TAPE_HD void operator()(int k) const { flag[k] = k < list.size && (everywhere || near(list[k])) ? 1 : 0; }
 
  private:
   TAPE_HD bool sleeps(int id) const {

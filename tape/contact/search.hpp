@@ -23,7 +23,8 @@ class ContactSearch {
  public:
   /// @param dhat   [m] activation distance beyond xi
   /// @param guard  [m] that of edge-edge pairs and of the barrier at open rims, <= dhat
-  ContactSearch(const SurfaceMesh& mesh, Real dhat, Real guard);
+  /// @param everywhere  look at all primitives from the world, in company or not
+  ContactSearch(const SurfaceMesh& mesh, Real dhat, Real guard, bool everywhere = false);
   /// What carries each vertex from now on. Members of clusters are looked for where they are at home, in trees that are planted once.
   void set_carriage(const SurfaceCarriage& carriage);
   /// Which objects somebody else keeps apart from now on, as SurfaceMesh::apart.
@@ -105,7 +106,7 @@ class ContactSearch {
   Buffer<int> block_object_;
   Buffer<Real> limit_;  ///< [components]
   SearchReport report_;
-  bool built_ = false;
+  bool everywhere_, built_ = false;
 };
 }  // namespace tape::TAPE_SIDE
 

@@ -1,12 +1,13 @@
 #pragma once
 
 namespace tape::TAPE_SIDE {
-inline ContactSearch::ContactSearch(const SurfaceMesh& mesh, Real dhat, Real guard)
+inline ContactSearch::ContactSearch(const SurfaceMesh& mesh, Real dhat, Real guard, bool everywhere)
     : mesh_(mesh),
       surface_(mesh, dhat, guard),
       groups_(mesh),
       component_(groups_.component_of_object),
-      block_object_(groups_.object_of_block) {
+      block_object_(groups_.object_of_block),
+      everywhere_(everywhere) {
   TAPE_CHECK(mesh.owner.size() == mesh.vertices.size() && guard > 0 && guard <= dhat);
   TAPE_CHECK(std::max(mesh.edges.size(), mesh.triangles.size()) < (1u << 24));
 }
@@ -135,7 +136,8 @@ inline void ContactSearch::find_company() {
   };
   const auto look_at = [&](detail::Part part, const Buffer<int>& all, Buffer<int>& out) {
     keep(all, out, [&](Span<const int> list, Span<int> flag) {
-      return detail::FlagLookedAt{s, part, list, partner_count_.span(), surface_.has_frame.span(), surface_.touches_itself.span(), flag};
+      return detail::FlagLookedAt{
+          s, part, everywhere_, list, partner_count_.span(), surface_.has_frame.span(), surface_.touches_itself.span(), flag};
     });
   };
   look_at(detail::Part::edge, surface_.everything.edges, looked_at_.edges);
@@ -143,7 +145,8 @@ inline void ContactSearch::find_company() {
   const auto near = [&](const detail::Primitives& all, bool awake, detail::Primitives& out) {
     const auto list = [&](detail::Part part, const Buffer<int>& from, Buffer<int>& to) {
       keep(from, to, [&](Span<const int> ids, Span<int> flag) {
-        return detail::FlagNear{s, sight, part, awake, ids, partner_count_.span(), meetings_.span(), surface_.touches_itself.span(), flag};
+        return detail::FlagNear{
+            s, sight, part, awake, everywhere_, ids, partner_count_.span(), meetings_.span(), surface_.touches_itself.span(), flag};
       });
     };
     list(detail::Part::vertex, all.vertices, out.vertices);

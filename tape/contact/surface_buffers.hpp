@@ -10,8 +10,10 @@ namespace tape::TAPE_SIDE::detail {
 /// Which body carries each whole primitive; kFixed or kFree if none does. On the host.
 struct Carriers {
   std::vector<int> vertex, edge, triangle;
-  explicit Carriers(const SurfaceMesh& mesh) {
-    for (const VertexOwner& o : mesh.owner) vertex.push_back(o.block < 0 ? kFixed : o.body < 0 ? kFree : o.body);
+  explicit Carriers(const SurfaceMesh& mesh) : Carriers(mesh, mesh.owner) {}
+  /// @param owner  [nv] if not as the mesh says
+  Carriers(const SurfaceMesh& mesh, const std::vector<VertexOwner>& owner) {
+    for (const VertexOwner& o : owner) vertex.push_back(o.block < 0 ? kFixed : o.body < 0 ? kFree : o.body);
     for (const SurfaceEdge& e : mesh.edges) edge.push_back(common(e.v));
     for (const SurfaceTriangle& t : mesh.triangles) triangle.push_back(common(t.v));
   }

@@ -55,12 +55,12 @@ class Buffer {
 
 namespace detail {
 inline constexpr int kChunk = 256;  // iterations per task; part of the definition of a sum, so it is fixed
-inline int chunk_count(int n) { return (n + kChunk - 1) / kChunk; }
+inline int chunk_count(int n, int size = kChunk) { return (n + size - 1) / size; }
 
 template <class F>
-void for_chunks(int n, const F& f) {  // f(chunk, begin, end)
-  const auto run = [&](int c) { f(c, c * kChunk, std::min(n, (c + 1) * kChunk)); };
-  const int chunks = chunk_count(n);
+void for_chunks(int n, const F& f, int size = kChunk) {  // f(chunk, begin, end)
+  const auto run = [&](int c) { f(c, c * size, std::min(n, (c + 1) * size)); };
+  const int chunks = chunk_count(n, size);
   if (chunks <= 1 || threads() == 1) {
     for (int c = 0; c < chunks; ++c) run(c);
   } else {
@@ -69,9 +69,13 @@ void for_chunks(int n, const F& f) {  // f(chunk, begin, end)
 }
 }  // namespace detail
 
+/// Iterations per task of kernels that take about a microsecond each.
+inline constexpr int kFew = 32;
+
 /// Calls k(i) for i in [0, n). Iterations must not depend on one another.
+/// @param task  iterations per task
 template <class Kernel>
-void parallel_for(int n, Kernel k) {
+void parallel_for(int n, Kernel k, int task = detail::kChunk) {
   if (n <= 0) return;
   if (recording_launches()) note_launch(typeid(Kernel).name());
   if (const std::uint64_t seed = shuffled_order()) {
@@ -81,9 +85,10 @@ void parallel_for(int n, Kernel k) {
     for (int i : order) k(i);
     return;
   }
-  detail::for_chunks(n, [&](int, int begin, int end) {
+  const auto run = [&](int, int begin, int end) {
     for (int i = begin; i < end; ++i) k(i);
-  });
+  };
+  detail::for_chunks(n, run, task);
 }
 
 /// k(0) (+) k(1) (+) ... over fixed chunks in fixed order: same bits for any number of threads.

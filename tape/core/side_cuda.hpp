@@ -105,9 +105,11 @@ __global__ void combine_partials(int n, T identity, Combine combine, T* partial)
 inline unsigned blocks(int n) { return static_cast<unsigned>((n + kThreads - 1) / kThreads); }
 }  // namespace detail
 
-/// Calls k(i) for i in [0, n). Iterations must not depend on one another.
+inline constexpr int kFew = 32;  ///< as on the CPU
+
+/// Calls k(i) for i in [0, n). Iterations must not depend on one another. The last parameter means nothing here.
 template <class Kernel>
-void parallel_for(int n, Kernel k) {
+void parallel_for(int n, Kernel k, int = 0) {
   if (n <= 0) return;
   detail::run<<<detail::blocks(n), detail::kThreads>>>(n, k);
   require(cudaGetLastError());

@@ -20,7 +20,8 @@ TAPE_HD VecN<18> Bending::gradient(const StateView& s, int i) const {
 TAPE_HD MatN<18, 18> Bending::hessian(const StateView& s, int i, HessianMode mode) const {
   const Angles a = angles(s, i);
   const Mat3 K = Eigen::Map<const Mat3>(&elements[i].K[0][0]);
-  MatN<18, 18> h = a.slope.transpose() * (K * a.slope);
+  const MatN<3, 18> moments = K * a.slope;
+  MatN<18, 18> h = a.slope.transpose().lazyProduct(moments);
   if (mode == HessianMode::projected) return h;
   for (int k = 0; k < 3; ++k) {
     if (free_edge(i, k)) continue;

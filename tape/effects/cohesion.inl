@@ -6,7 +6,7 @@
 namespace tape {
 /// Whether the faces that vertex and triangle turn to each other adhere. The offset of the pair points to the vertex.
 TAPE_HD inline bool adheres(const Adhesion& adhesion, const ContactPair& pair, const PairState& p, const StateView& s) {
-  const Face of_vertex = s.normal[pair.v[0]].dot(p.offset) > 0 ? Face::sticky : Face::backing;
+  const Face of_vertex = s.fans.area_normal(s.x, pair.v[0]).dot(p.offset) > 0 ? Face::sticky : Face::backing;
   const Face of_triangle = (p.x[2] - p.x[1]).cross(p.x[3] - p.x[1]).dot(p.offset) < 0 ? Face::sticky : Face::backing;
   return adhesion.sticks[static_cast<int>(of_vertex)][static_cast<int>(of_triangle)];
 }
@@ -33,7 +33,7 @@ TAPE_HD MatN<12, 12> Cohesion::hessian(const StateView& s, int i, HessianMode mo
   const Element& e = elements[i];
   const PairState p = PairState::at(e.pair, s.x);
   const MatN<12, 2> J = e.lagged.slope(frame, s);
-  MatN<12, 12> h = e.sliding * J * J.transpose();
+  MatN<12, 12> h = (e.sliding * J).lazyProduct(J.transpose());
   if (mode == HessianMode::exact) {
     h += p.hessian(e.opening * (p.d - e.rest), e.opening);
     e.lagged.add_curvature(frame, s, e.sliding * slip(s, i), h);

@@ -56,27 +56,24 @@ TAPE_HD MatN<18, 18> CohesiveZone::hessian(const StateView& s, int i, HessianMod
   const Element& e = elements[i];
   const auto at = plane(e, s.x);
   const Opening o(e, at);
-  const Real slope = e.area * e.zone.slope(o.delta());
-  const MatN<18, 2> J = at.slope();
-  MatN<18, 18> h = 2 * slope * e.shear * J * e.inverse_metric * J.transpose();
-  if (o.open > 0) {
-    const VecN<18> g = height_gradient(at, o);
-    h += 2 * slope * g * g.transpose();
+  const Real slope = e.area * e.zone.slope(o.delta()), curvature = e.area * e.zone.curvature(o.delta());
+  const bool exact = mode == HessianMode::exact, open = o.open > 0;
+  MatN<18, 3> B;  // d along/dx, dh/dx: h = B S B^T and what the second derivatives of along and of |r|^2 add
+  B << at.slope(), open ? height_gradient(at, o) : VecN<18>(VecN<18>::Zero());
+  const Real pull = exact && open ? 2 * slope * o.open / o.height : 0;  // by h^2 = |r|^2 - c^T G^-1 c
+  Mat3 S = Mat3::Zero();
+  S.topLeftCorner<2, 2>() = (2 * slope * e.shear - pull) * e.inverse_metric;
+  if (open) S(2, 2) = 2 * slope - pull;
+  if (exact) {
+    const Vec3 square(2 * e.shear * o.slipped.x(), 2 * e.shear * o.slipped.y(), open ? 2 * o.open : 0);
+    S += curvature * square * square.transpose();
   }
-  if (mode == HessianMode::projected) return h;
-  at.add_curvature(2 * slope * e.shear * o.slipped, h);
-  if (o.open > 0) {  // 2 slope open d2h/dx2, by h^2 = |r|^2 - c^T G^-1 c
-    const VecN<18> g = height_gradient(at, o);
-    const Real pull = 2 * slope * o.open / o.height;
-    for (int k = 0; k < 6; ++k)
-      for (int l = 0; l < 6; ++l) h.block<3, 3>(3 * k, 3 * l).diagonal().array() += pull * at.w[k] * at.w[l];
-    h -= pull * (J * e.inverse_metric * J.transpose() + g * g.transpose());
-    at.add_curvature(-pull * o.beside, h);
-  }
-  if (const Real curvature = e.area * e.zone.curvature(o.delta()); curvature != 0) {
-    const VecN<18> g = square_gradient(e, at, o);
-    h += curvature * g * g.transpose();
-  }
+  const MatN<18, 3> BS = B * S;
+  MatN<18, 18> h = BS.lazyProduct(B.transpose());
+  if (!exact) return h;
+  for (int k = 0; k < 6 && open; ++k)
+    for (int l = 0; l < 6; ++l) h.block<3, 3>(3 * k, 3 * l).diagonal().array() += pull * at.w[k] * at.w[l];
+  at.add_curvature(2 * slope * e.shear * o.slipped - pull * o.beside, h);
   return h;
 }
 template <class F>

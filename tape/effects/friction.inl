@@ -28,7 +28,8 @@ TAPE_HD MatN<12, 12> Friction::hessian(const StateView& s, int i, HessianMode mo
   Mat2 m = pull * Mat2::Identity();
   if (!s.overshot && y > 0) m -= Mat2(u * u.transpose()) * (law(s).bend(y) / (y * y));
   const MatN<12, 2> J = e.lagged.slope(frame, s);
-  MatN<12, 12> h = e.limit * J * m * J.transpose();
+  const MatN<12, 2> Jm = J * (e.limit * m);
+  MatN<12, 12> h = Jm.lazyProduct(J.transpose());
   if (mode == HessianMode::exact && !s.overshot) e.lagged.add_curvature(frame, s, e.limit * pull * u, h);
   return h;
 }

@@ -41,6 +41,7 @@ struct ContactParams {
   Real ccd_gap = 0.2;
   Real margin = 0.5;
   Real max_move = 0.05;
+  bool everywhere = false;
   template <class F>
   void fields(F&& f) {
     f("dhat", dhat, "m", Range::non_negative(), "activation distance of the barrier; 0: that of the film");
@@ -49,6 +50,8 @@ struct ContactParams {
     f("ccd_gap", ccd_gap, "1", Range::above(0, 0.99), "fraction of a gap that one Newton step must leave");
     f("max_move", max_move, "m", Range::positive(), "longest way of a vertex in one Newton iteration: keeps the swept search small");
     f("margin", margin, "1", Range::non_negative(), "slack of the candidate search, in units of dhat: more finds more pairs less often");
+    f("everywhere", everywhere, "", Range::any(),
+      "also search where nothing can meet: the same result, to measure what leaving that out saves");
   }
 };
 

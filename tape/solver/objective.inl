@@ -348,17 +348,19 @@ inline void Objective::fill(const StateView& s, HessianMode mode, bool contact, 
   for_each([&]<class T>(std::string_view, Term<T>& term) {
     if (is_contact<T> != contact || term.count == 0) return;
     const Stopwatch watch(term.ms);
-    parallel_for(term.count, objective::FillSlots<T>{term.view,
-                                                     s,
-                                                     {term.active.span()},
-                                                     mode,
-                                                     hessian,
-                                                     term.offsets.gradient.span(),
-                                                     term.offsets.hessian.span(),
-                                                     term.gradient_base,
-                                                     term.hessian_base,
-                                                     group.gradient.span(),
-                                                     group.hessian.span()});
+    parallel_for(term.count,
+                 objective::FillSlots<T>{term.view,
+                                         s,
+                                         {term.active.span()},
+                                         mode,
+                                         hessian,
+                                         term.offsets.gradient.span(),
+                                         term.offsets.hessian.span(),
+                                         term.gradient_base,
+                                         term.hessian_base,
+                                         group.gradient.span(),
+                                         group.hessian.span()},
+                 kFew);
   });
   if (!contact || group.rows.size() > 0) group.gather.gather(group.gradient.span(), contact, gradient_.span());
 }

@@ -14,17 +14,16 @@ namespace {
 Mat3 orthonormal(const Mat3& R) { return Eigen::Quaternion<Real>(R).normalized().toRotationMatrix(); }
 
 void add_grip_forces(const World& world, const State& after, Real dt, StepReport& report) {
-  State at = after;
-  at.time -= dt;
-  const Drive drive = Drive::at(world, at, dt);
-  const std::vector<Vec3> x = vertex_positions(world, after);
+  if (world.assembly.grips.empty()) return;
+  const Drive drive = Drive::at(world, after, after.time, dt);
+  const auto x = [&](int v) { return vertex_position(world, after, static_cast<std::size_t>(v)); };
   std::size_t spring = 0;
   for (const Assembly::GripPart& grip : world.assembly.grips) {
     Vec3 force = Vec3::Zero();
     for (std::size_t k = 0; k < grip.vertices.size(); ++k, ++spring) {
       const int anchor = grip.anchors[k];
-      const Vec3 target = anchor < 0 ? drive.grip_target[spring] : x[static_cast<std::size_t>(anchor)];
-      force += drive.grip_stiffness[spring] * (target - x[static_cast<std::size_t>(grip.vertices[k])]);
+      const Vec3 target = anchor < 0 ? drive.grip_target[spring] : x(anchor);
+      force += drive.grip_stiffness[spring] * (target - x(grip.vertices[k]));
     }
     report.grip_force.push_back(force);
   }
@@ -34,9 +33,7 @@ void add_driven_forces(const World& world, const State& after, Real dt, StepRepo
   std::vector<BodyDrive::Element> held;
   BodyDrive::build(world.setup.scene, world.assembly, params<BodyDrive>(world.setup.effects), held);
   if (held.empty()) return;
-  State at = after;
-  at.time -= dt;
-  const Drive drive = Drive::at(world, at, dt);
+  const Drive drive = Drive::at(world, after, after.time, dt);
   for (const BodyDrive::Element& hold : held) {
     const auto b = static_cast<std::size_t>(hold.body);
     report.body_force[b] = hold.stiffness.gradient(after.bodies[b].pose, drive.body_target[b]).head<3>();
@@ -66,6 +63,7 @@ void finish_body(const BodyMass& mass, const Pose& pose, const Pose& target, Rea
 void finish_step(const World& world, const Carriage& carriage, const State& before, const State& after, Real dt, StepReport& report) {
   report.kinetic = 0;
   for (std::size_t v = 0; v < after.x.size(); ++v) {
+    if (carriage.mass[v] == 0) continue;  // a member of a cluster
     report.kinetic += carriage.mass[v] * after.v[v].squaredNorm() / 2;
     report.momentum += carriage.mass[v] * after.v[v];
     report.angular_momentum += carriage.mass[v] * after.x[v].cross(after.v[v]);

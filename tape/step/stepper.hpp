@@ -44,6 +44,7 @@ struct StepReport {
   int substeps = 1;     ///< more than 1: retried at a fraction of dt
   int newton = 0;       ///< iterations, all substeps
   int halvings = 0;     ///< of the line search
+  int shortened = 0;    ///< updates that were made shorter before the search: their way was too long, or swept through too much
   int hessian_fallbacks = 0;
   int linear_iterations = 0;
   int linear_failures = 0;  ///< solves that ended at their iteration limit

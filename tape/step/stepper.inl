@@ -9,8 +9,8 @@
 #include "tape/bodies/configuration.hpp"
 #include "tape/bodies/free_flight.hpp"
 #include "tape/contact/gap.hpp"
-#include "tape/contact/normals.hpp"
 #include "tape/contact/search.hpp"
+#include "tape/contact/surface_fans.hpp"
 #include "tape/solver/articulations.inl"
 #include "tape/solver/linear_solver.hpp"
 #include "tape/solver/objective.inl"
@@ -113,7 +113,7 @@ class SideStepper final : public Stepper {
   Real renew(const State& state) override {
     take_world();
     begin(state, world_.setup.scene.time.dt);
-    prescribe(Drive::at(world_, state, 0));
+    prescribe(Drive::at(world_, state, state.time, 0));
     take_up(state);
     recall(state.memory);
     return stored_energy();
@@ -127,16 +127,15 @@ class SideStepper final : public Stepper {
     reset_times();
     {
       const Stopwatch watch(report.wall_ms);
-      State next = state;
-      const Real end = (state.step + 1) * dt;
-      report.ok = advance(next, dt, world_.setup.newton.retries, report);
+      std::optional<State> next = advance(state, dt, world_.setup.newton.retries, report);
+      report.ok = next.has_value();
       report.articulations = progress_.done;
       if (report.ok) {
-        next.time = end;
-        ++next.step;
-        finish_step(world_, carriage_, state, next, dt, report);
-        report.woken = move_fronts(state, next);
-        state = std::move(next);
+        ++next->step;
+        next->time = next->step * dt;
+        finish_step(world_, carriage_, state, *next, dt, report);
+        report.woken = move_fronts(state, *next);
+        state = std::move(*next);
       }
     }
     collect(report);
@@ -160,13 +159,14 @@ class SideStepper final : public Stepper {
     const auto tape_end = assembly.mass.begin() + assembly.strip_vertices;
     moving_mass_ = std::accumulate(assembly.mass.begin(), tape_end == assembly.mass.begin() ? assembly.mass.end() : tape_end, Real{0});
     apart_ = world_.surface.apart;
-    if (world_.is_on(Barrier::name)) search_.emplace(world_.surface, scene.dhat(), scene.contact.guard * scene.dhat());
+    if (world_.is_on(Barrier::name))
+      search_.emplace(world_.surface, scene.dhat(), scene.contact.guard * scene.dhat(), scene.contact.everywhere);
     blades_.emplace(world_);
     std::vector<bool> on;
     for (const PlanLine& line : world_.plan) on.push_back(line.on);
     objective_.emplace(scene, world_.setup.effects, assembly, on);
     objective_->for_each([&]<class T>(std::string_view, Term<T>&) {
-      if (Remembers<T>) normals_.emplace(world_.surface);
+      if (Remembers<T>) fans_.emplace(world_.surface);
     });
   }
   /// Makes everything that depends on what carries the vertices, as it is in a state.
@@ -283,7 +283,7 @@ class SideStepper final : public Stepper {
     start_.q.upload(std::vector<Vec3>(static_cast<std::size_t>(articulations_.q_blocks()), Vec3::Zero()));
     if (!exchange_.articulations.empty()) articulations_.begin(exchange_.articulations, course(dt), dt);
     x_tilde_.upload(x_tilde);
-    prescribe(Drive::at(world_, state, dt));
+    prescribe(Drive::at(world_, state, state.time + dt, dt));
     now_.copy_from(start_);
     trial_.copy_from(start_);
   }
@@ -303,12 +303,13 @@ class SideStepper final : public Stepper {
             .grip_stiffness = grip_stiffness_.span(),
             .mu = mu_.span(),
             .adhesion = adhesion_.span(),
-            .normal = {}};
+            .fans = {}};
   }
 
-  /// One step of dt; on failure two of dt/2, and so on `retries` times. `state` is changed on success only.
-  bool advance(State& state, Real dt, int retries, StepReport& report) {
-    State next = state;
+  /// One step of dt; on failure two of dt/2, and so on `retries` times.  @return the state at its end; nothing if all fails
+  std::optional<State> advance(const State& from, Real dt, int retries, StepReport& report) {
+    std::optional<State> end = from;
+    State& next = *end;
     const Progress before = progress_;
     close_grips(world_, next);
     begin(next, dt);
@@ -317,19 +318,18 @@ class SideStepper final : public Stepper {
       read_back(next, dt);
       add_progress(dt);
       renew_memory(next, dt, report);
-      state = std::move(next);
-      return true;
+      return end;
     }
-    if (retries == 0) return false;
+    if (retries == 0) return {};
     ++report.substeps;
-    next = state;
-    if (!advance(next, dt / 2, retries - 1, report) || !advance(next, dt / 2, retries - 1, report)) {
+    end = advance(from, dt / 2, retries - 1, report);
+    if (end) end = advance(*end, dt / 2, retries - 1, report);
+    if (end) {
+      report.failure.clear();
+    } else {
       progress_ = before;
-      return false;
     }
-    report.failure.clear();
-    state = std::move(next);
-    return true;
+    return end;
   }
 
   /// Lets clusters lose members at the end of a step. @return [J] stored in what wakes
@@ -339,7 +339,7 @@ class SideStepper final : public Stepper {
     if (!advance_fronts(world_, carriage_, before, after)) return 0;
     const Real known = stored_energy() + std::exchange(regained_, 0);
     begin(after, dt_);
-    prescribe(Drive::at(world_, after, 0));
+    prescribe(Drive::at(world_, after, after.time, 0));
     take_up(after);
     recall(after.memory);
     front_ms_ -= search_ms_ - searched;
@@ -376,7 +376,7 @@ class SideStepper final : public Stepper {
 
   /// Brings the memory to the end of a step at now_, and books what that does to the energy.
   void renew_memory(State& state, Real dt, StepReport& report) {
-    if (!normals_) return;
+    if (!fans_) return;
     report.adhesion = adhesion();
     StateView s = view(now_);
     const Real adhesive = objective_->adhesive_energy(s);
@@ -413,10 +413,10 @@ class SideStepper final : public Stepper {
   }
   /// What adheres at now_, `dt` [s] after the start of the step.
   EffectMemory remember(Real dt) {
-    if (!normals_) return {};
+    if (!fans_) return {};
     StateView s = view(now_);
     s.dt = dt;
-    s.normal = normals_->at(s.x);
+    s.fans = fans_->view();
     return objective_->remember(s, search_->samples(coordinates_->paths(now_, direction_.span())));
   }
   /// Candidates and elements of a step that starts at now_ with this memory, before it has a direction: after a front has moved, the last
@@ -427,7 +427,7 @@ class SideStepper final : public Stepper {
     replaced_ = pairs_out_of_contact(memory);
     search_->set_bonded(replaced_);  // makes the search start anew: its past must not change the order of sums
     update_candidates(direction_.span());
-    if (normals_) objective_->recall(memory, view(now_), search_->surface());
+    if (fans_) objective_->recall(memory, view(now_), search_->surface());
   }
 
   /// Newton's method from now_ == start_, the start of a step at `state`, to its end.
@@ -565,6 +565,7 @@ class SideStepper final : public Stepper {
     constexpr int kMost = 40;  // pairs for each vertex and edge
     const Stopwatch watch(search_ms_);
     for (; way > kFar * dhat && !search_->within(paths(), contact.margin * dhat, kMost); way /= 4) scale(0.25);
+    if (limit_ < 1) ++shortened_;
   }
 
   /// Shortens direction_ so that nothing crosses on the way: by CCD for each connected component.
@@ -626,7 +627,7 @@ class SideStepper final : public Stepper {
 
   void reset_times() {
     search_ms_ = assembly_ms_ = linear_ms_ = ccd_ms_ = line_search_ms_ = front_ms_ = 0;
-    searches_ = 0;
+    searches_ = shortened_ = 0;
     regained_ = 0;
     capped_before_ = search_ ? search_->report().capped : 0;
     objective_->for_each([](std::string_view, auto& term) { term.ms = 0; });
@@ -636,6 +637,7 @@ class SideStepper final : public Stepper {
   void collect(StepReport& report) {
     const StateView s = view(now_);
     report.searches = searches_;
+    report.shortened = shortened_;
     report.ccd_capped = search_ ? static_cast<int>(search_->report().capped - capped_before_) : 0;
     objective_->for_each([&]<class T>(std::string_view name, Term<T>& term) {
       EffectReport line{.name = std::string(name), .ms = term.ms, .energy = 0, .elements = term.count};
@@ -683,8 +685,8 @@ class SideStepper final : public Stepper {
   Carriage carriage_;
   Fronts fronts_;  // that the carriage is of
   std::optional<Coordinates> coordinates_;
-  std::optional<ContactSearch> search_;   // where things can touch
-  std::optional<VertexNormals> normals_;  // where something adheres
+  std::optional<ContactSearch> search_;  // where things can touch
+  std::optional<SurfaceFans> fans_;      // where something adheres
   std::optional<BladeWatch> blades_;
   std::vector<VertexTriangle> replaced_;  // pairs that are out of contact in this step
   Real regained_ = 0;                     // [J] energy of contact that the end of the step let back, beyond that of the candidates
@@ -709,7 +711,7 @@ class SideStepper final : public Stepper {
   Real limit_ = 1;            // share of the last direction that its limits let go, the least of all components
   bool setting_out_ = false;  // the first updates of a step with links
   Real search_ms_ = 0, assembly_ms_ = 0, linear_ms_ = 0, ccd_ms_ = 0, line_search_ms_ = 0, front_ms_ = 0;
-  int searches_ = 0;
+  int searches_ = 0, shortened_ = 0;
   long long capped_before_ = 0;
 };
 }  // namespace tape::TAPE_SIDE

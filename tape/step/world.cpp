@@ -157,32 +157,34 @@ const BodyMass& body_mass(const World& world, const State& state, std::size_t bo
   return body < first ? world.assembly.bodies[body].mass : state.clusters[body - first].mass;
 }
 
+Vec3 vertex_position(const World& world, const State& state, std::size_t v) {
+  if (v < state.x.size()) return state.x[v];
+  const int b = world.assembly.owner[v].body;
+  return b < 0 ? world.assembly.x[v] : apply(state.bodies[static_cast<std::size_t>(b)].pose, world.assembly.local[v]);
+}
 std::vector<Vec3> vertex_positions(const World& world, const State& state) {
-  std::vector<Vec3> x = world.assembly.x;
-  std::copy(state.x.begin(), state.x.end(), x.begin());
-  for (std::size_t v = state.x.size(); v < x.size(); ++v)
-    if (const int b = world.assembly.owner[v].body; b >= 0)
-      x[v] = apply(state.bodies[static_cast<std::size_t>(b)].pose, world.assembly.local[v]);
+  std::vector<Vec3> x;
+  x.reserve(world.assembly.x.size());
+  x.assign(state.x.begin(), state.x.end());
+  for (std::size_t v = x.size(); v < world.assembly.x.size(); ++v) x.push_back(vertex_position(world, state, v));
   return x;
 }
 
 void close_grips(const World& world, State& state) {
   const Scene& scene = world.setup.scene;
-  const std::vector<Vec3> x = vertex_positions(world, state);
   std::size_t spring = 0;
   for (std::size_t g = 0; g < scene.grips.size(); ++g) {
     const bool closes = state.grip_closed[g] == 0 && state.time >= scene.grips[g].start.at(state.events);
     if (closes) state.grip_closed[g] = 1;
     for (int v : world.assembly.grips[g].vertices) {
-      if (closes) state.grip_base[spring] = x[static_cast<std::size_t>(v)];
+      if (closes) state.grip_base[spring] = vertex_position(world, state, static_cast<std::size_t>(v));
       ++spring;
     }
   }
 }
 
-Drive Drive::at(const World& world, const State& state, Real dt) {
+Drive Drive::at(const World& world, const State& state, Real end, Real dt) {
   const Scene& scene = world.setup.scene;
-  const Real end = state.time + dt;
   Drive drive;
   for (std::size_t g = 0; g < scene.grips.size(); ++g) {
     const Grip& grip = scene.grips[g];

@@ -81,6 +81,8 @@ struct State {
   std::string hash() const;
 };
 
+/// World-space position [m] of a vertex.
+Vec3 vertex_position(const World& world, const State& state, std::size_t v);
 /// World-space positions [nv] m of all vertices.
 std::vector<Vec3> vertex_positions(const World& world, const State& state);
 
@@ -89,7 +91,8 @@ struct Drive {
   std::vector<Vec3> grip_target;     ///< [springs] m; unused where the grip ties to a body
   std::vector<Real> grip_stiffness;  ///< [springs] N/m, 0 while open
   std::vector<Pose> body_target;     ///< [bodies] X_WB; dynamic bodies: where their inertia takes them
-  static Drive at(const World& world, const State& state, Real dt);
+  /// @param end  [s]  @param dt  [s] from the state to there
+  static Drive at(const World& world, const State& state, Real end, Real dt);
 };
 /// Mass of a body; of a cluster, as it is now.
 const BodyMass& body_mass(const World& world, const State& state, std::size_t body);

@@ -72,6 +72,20 @@ Setup shaken() {
   }
   return setup;
 }
+/// A box of two halves with tape over its seam, crushed by a fifth of its length: the seam closes from 16 to 2 mm.
+Setup crushed_box(AdhesionLaw law) {
+  const Film film = vinyl();
+  Setup setup = dropped_strip(0.06, 3, film.xi + 0.55 * film.dhat);
+  for (const auto& [name, side] : {std::pair{"left", -1}, {"right", 1}}) {
+    Body& half = add_body(setup, name, box_mesh(Vec3(0.027, 0.04, 0.01), {6, 8, 1}), Motion::driven, Vec3(side * 0.0215, 0, -0.005));
+    half.material = 1;
+    half.waypoints = {{.time = 0, .pose = half.pose}, {.time = 0.3, .pose = half.pose}};
+    half.waypoints[1].pose.position.x() -= side * 0.007;
+  }
+  setup.scene.materials.push_back({"board", 0.5});
+  setup.scene.adhesives = {{0, 1, adhesion(law)}};
+  return setup;
+}
 /// A strip folded on its sticky face over a loop; its ends are pressed together and let go.
 Setup stuck_to_itself(AdhesionLaw law) {
   const Film film = vinyl();
@@ -139,6 +153,7 @@ std::vector<HardCase> adhesion_cases() {
       {"adhesion_torn_pairs", "a strip torn off at 1 m/s", 0.05, true, [] { return torn(adhesion(per_pair), 1); }},
       {"adhesion_torn_bonds", "bonds torn at 1 m/s", 0.05, true, [] { return torn(adhesion(bond), 1); }, {}, 1e-6, true},
       {"adhesion_torn_area", "a steep law by area, far from resolved, torn at 1 m/s", 0.05, true, [=] { return torn(steep, 1); }},
+      {"adhesion_crushed_box", "a taped box crushed by a fifth of its length", 0.35, true, [] { return crushed_box(per_pair); }, sticks},
       {"adhesion_on_itself", "folded on its sticky face, pressed together, let go", 0.4, true, [] { return stuck_to_itself(per_pair); },
        sticks},
       {"adhesion_on_itself_area", "the same by area", 0.4, true, [] { return stuck_to_itself(per_area); }, sticks},

@@ -175,7 +175,7 @@ void EffectWorld::add_samples() {
 
 void EffectWorld::disturb() {
   x = x_start = x_tilde = assembly.x;
-  normal.assign(x.size(), Vec3(0, 0, 1));
+  no_fan.assign(x.size() + 1, 0);
   for (std::size_t i = 0; i < x.size(); ++i) {
     const bool strip = static_cast<int>(i) < assembly.strips[0].vertices;
     if (strip) x[i] += random_vector(1e-3);
@@ -204,7 +204,7 @@ StateView EffectWorld::view() const {
           span(grip_stiffness),
           span(mu),
           span(adhesion),
-          span(normal)};
+          {span(no_fan), {}}};
 }
 StateView EffectWorld::start_view() const {
   StateView s = view();

@@ -22,7 +22,7 @@ class EffectWorld {
   std::vector<Vec3> grip_target;
   std::vector<Real> grip_stiffness, mu;
   std::vector<Adhesion> adhesion;
-  std::vector<Vec3> normal;
+  std::vector<int> no_fan;  ///< all faces adhere to all
   Real dt = 0.01;
 
   StateView view() const;

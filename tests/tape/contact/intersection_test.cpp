@@ -91,6 +91,22 @@ TEST(Intersection, WhatCannotCollideIsNotCounted) {
   EXPECT_EQ(find_intersections(far.mesh, far.x).count, 0);
 }
 
+TEST(Intersection, MembersOfAClusterAreOnlyComparedWithOthers) {
+  const test::Surface roll = test::wound_strip(6, 2.7e-4, kXi);
+  const std::size_t n = roll.x.size();
+  std::vector<VertexOwner> owner = roll.mesh.owner;
+  for (std::size_t v = 0; v < 3 * n / 4; ++v) owner[v] = {0, 0};
+  EXPECT_GT(roll.mesh.triangles.size(), 2000u) << "enough for the members to have a tree of their own";
+  for (const auto& [moved, seen] : {std::pair{7 * n / 8, true}, {n / 4, false}}) {
+    test::Surface s = roll;
+    Vec3& p = s.x[moved];
+    p -= 4e-4 * Vec3(p.x(), p.y(), 0).normalized();  // 1.5 pitches inwards
+    const int all = find_intersections(s.mesh, s.x).count;
+    EXPECT_GT(all, 0);
+    EXPECT_EQ(find_intersections(s.mesh, owner, s.x).count, seen ? all : 0);
+  }
+}
+
 TEST(Intersection, AStartIsRefusedByTheNamesOfWhatMeets) {
   EXPECT_EQ(refusal(spike_over_plate(2.001 * kXi)), "");
   const std::string crossing = refusal(spike_over_plate(-0.5));

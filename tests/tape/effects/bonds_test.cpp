@@ -14,8 +14,9 @@ const Real kSide = std::sqrt(2 * kArea);
 /// A vertex bonded over the middle of a triangle in the plane z = 0.
 struct Bonded {
   BondLaw law;
-  std::vector<Vec3> start{{kSide / 3, kSide / 3, kRest}, {0, 0, 0}, {0, kSide, 0}, {kSide, 0, 0}}, x = start;
-  std::vector<Vec3> normal = std::vector<Vec3>(4, Vec3(0, 0, 1));
+  std::vector<Vec3> start{{kSide / 3, kSide / 3, kRest}, {0, 0, 0}, {0, kSide, 0}, {kSide, 0, 0}, {1, 0, kRest}, {0, 1, kRest}}, x = start;
+  std::vector<int> first_corner{0, 1, 1, 1, 1};
+  std::vector<Index2> corners{{4, 5}};  // of the vertex's other triangle, which faces up
   std::vector<Adhesion> adhesion{{AdhesionLaw::bond, {{false, false}, {false, true}}, {}, {}, {}}};
   ContactPair pair{.v = {0, 1, 2, 3},
                    .kind = PairKind::vertex_triangle,
@@ -35,9 +36,9 @@ struct Bonded {
     adhesion[0].bond = law;
     StateView s{};
     s.dt = 0.01;
-    s.x = {at.data(), 4};
+    s.x = {at.data(), 6};
     s.adhesion = {adhesion.data(), 1};
-    s.normal = {normal.data(), 4};
+    s.fans = {{first_corner.data(), 5}, {corners.data(), 1}};
     return s;
   }
   bool make() {

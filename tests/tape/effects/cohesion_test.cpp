@@ -11,8 +11,9 @@ constexpr Real kDhat = 1.8e-4, kXi = 9e-5, kRest = kXi + kDhat / 2;  // [m]
 /// A vertex over the middle of a triangle in the plane z = 0, both of strips that face each other with their sticky sides.
 struct Stuck {
   PairCohesion law{.cn = 0.675, .ct = 0.675, .beta0 = 1};
-  std::vector<Vec3> start{{3e-4, 3e-4, kRest}, {0, 0, 0}, {0, 1e-3, 0}, {1e-3, 0, 0}}, x = start;
-  std::vector<Vec3> normal = std::vector<Vec3>(4, Vec3(0, 0, 1));
+  std::vector<Vec3> start{{3e-4, 3e-4, kRest}, {0, 0, 0}, {0, 1e-3, 0}, {1e-3, 0, 0}, {1, 0, kRest}, {0, 1, kRest}}, x = start;
+  std::vector<int> first_corner{0, 1, 1, 1, 1};
+  std::vector<Index2> corners{{4, 5}};  // of the vertex's other triangle, which faces up
   std::vector<Adhesion> adhesion{{AdhesionLaw::per_pair, {{false, false}, {false, true}}, {}, {}, {}}};
   ContactPair pair{.v = {0, 1, 2, 3},
                    .kind = PairKind::vertex_triangle,
@@ -32,10 +33,10 @@ struct Stuck {
     adhesion[0].pair = law;
     StateView s{};
     s.dt = dt;
-    s.x = {at.data(), 4};
+    s.x = {at.data(), 6};
     s.x_start = {start.data(), 4};
     s.adhesion = {adhesion.data(), 1};
-    s.normal = {normal.data(), 4};
+    s.fans = {{first_corner.data(), 5}, {corners.data(), 1}};
     return s;
   }
   /// Starts a step at `start` and ends it at x.
@@ -153,9 +154,9 @@ TEST(Cohesion, OnlyStickyFacesAdhere) {
   Stuck s;
   Cohesion::Memory m{};
   EXPECT_TRUE(s.cohesion.begin(s.pair, s.view(s.x), m)) << "the triangle's normal points down, the vertex's up: sticky faces meet";
-  s.normal[0] = Vec3(0, 0, -1);
+  s.corners[0] = Index2(5, 4);
   EXPECT_FALSE(s.cohesion.begin(s.pair, s.view(s.x), m)) << "the vertex turns its backing";
-  s.normal[0] = Vec3(0, 0, 1);
+  s.corners[0] = Index2(4, 5);
   std::swap(s.pair.v[1], s.pair.v[2]);
   EXPECT_FALSE(s.cohesion.begin(s.pair, s.view(s.x), m)) << "the triangle turns its backing";
   s.adhesion[0].sticks[1][0] = true;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tape/model/primitives.hpp"
 #include "tests/support/gating.hpp"
 using namespace tape;
 using namespace tape::test;
@@ -52,6 +53,17 @@ TEST(Gating, WithoutBendingIsAFilmThatDoesNotResistIt) {
   EXPECT_FALSE(reported(off.report(), "bending"));
   EXPECT_LE(largest_difference(zero, off), kSame);
   EXPECT_GT(largest_difference(zero, after(swinging(), 8)), 1e-6) << "bending would not matter here";
+}
+TEST(Gating, LookingOnlyWhereThingsMeetChangesNoBit) {
+  auto setup = draped();
+  add_body(setup, "under", box_mesh(Vec3(0.08, 0.04, 0.01), {8, 4, 1}), Motion::dynamic, Vec3(0.01, 0, -0.0252));
+  add_body(setup, "far", box_mesh(Vec3(0.1, 0.1, 0.01)), Motion::dynamic, Vec3(1, 0, 0));
+  const Simulation there = after(setup, 12);
+  setup.scene.contact.everywhere = true;
+  const Simulation everywhere = after(setup, 12);
+  EXPECT_GT(there.report().active_pairs, 0);
+  EXPECT_EQ(there.report().candidates, everywhere.report().candidates);
+  EXPECT_EQ(there.state().hash(), everywhere.state().hash());
 }
 TEST(Gating, AStripFarFromEverythingHasNoPairsAndSpendsNoTimeOnThem) {
   auto setup = swinging();
