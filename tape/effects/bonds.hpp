@@ -55,9 +55,11 @@ struct Bonds {
 
   /// Bonds form where the vertex stands over the face, within reach and not pressed below the floor.
   TAPE_HD inline bool begin(const ContactPair& pair, const StateView& s, Memory& out) const;
-  TAPE_HD inline bool renew(const StateView& s, int i, Memory& m) const;
-  /// In tension, with more than the break force on the vertex.
-  TAPE_HD inline bool gives_way(const StateView& s, int i) const;
+  TAPE_HD bool renew(const StateView&, int, Memory& m) const { return m.cooldown == 0 || --m.cooldown > 0; }
+  /// Force on the vertex over the break force, in tension; else 0.
+  TAPE_HD inline Real load(const StateView& s, int i) const;
+  /// The end of the step is the first that the cooldown counts.
+  TAPE_HD void let_go(const StateView& s, int i, Memory& m) const { m.cooldown = s.adhesion[elements[i].pair.interface].bond.cooldown + 1; }
   /// Near its release the force of a bond must be known to a twentieth, or errors of the solver release it: stiffness 8 V kappa_b/h^2.
   TAPE_HD inline Real accuracy_to_judge(const StateView& s, int i) const;
   TAPE_HD inline AdhesiveForce force(const StateView& s, int i) const;

@@ -47,22 +47,15 @@ TAPE_HD bool Bonds::begin(const ContactPair& pair, const StateView& s, Memory& o
   out = {pair.name(), 0, p.d, edges(p.x).inverse()};
   return true;
 }
-TAPE_HD bool Bonds::renew(const StateView& s, int i, Memory& m) const {
-  if (m.cooldown > 0) return --m.cooldown > 0;
-  if (!gives_way(s, i)) return true;
-  m.cooldown = s.adhesion[elements[i].pair.interface].bond.cooldown;
-  return m.cooldown > 0;
-}
-TAPE_HD bool Bonds::gives_way(const StateView& s, int i) const {
+TAPE_HD Real Bonds::load(const StateView& s, int i) const {
   const Element& e = elements[i];
-  return e.stiffness > 0 && in_tension(e, s) && bond_gradient(e, s).head<3>().norm() > s.adhesion[e.pair.interface].bond.break_force;
+  if (!(e.stiffness > 0) || !in_tension(e, s)) return 0;
+  return bond_gradient(e, s).head<3>().norm() / s.adhesion[e.pair.interface].bond.break_force;
 }
 TAPE_HD Real Bonds::accuracy_to_judge(const StateView& s, int i) const {
   const Element& e = elements[i];
-  const Real limit = s.adhesion[e.pair.interface].bond.break_force;
-  if (!(e.stiffness > 0) || !in_tension(e, s) || !(bond_gradient(e, s).head<3>().norm() > 0.8 * limit))
-    return std::numeric_limits<Real>::infinity();
-  return 0.05 * limit * e.rest * e.rest / (8 * e.stiffness);
+  if (!(load(s, i) > 0.8)) return std::numeric_limits<Real>::infinity();
+  return 0.05 * s.adhesion[e.pair.interface].bond.break_force * e.rest * e.rest / (8 * e.stiffness);
 }
 TAPE_HD AdhesiveForce Bonds::force(const StateView& s, int i) const {
   const Element& e = elements[i];

@@ -34,7 +34,9 @@ namespace tape {
 ///     bool renew(s, i, Memory&)                what element i remembers at the end of the step; false: the pair is forgotten
 ///     bool begin(pair, s, Memory& out)         whether a candidate that was not remembered is from now on; a sample sticks to the nearest
 ///     AdhesiveForce force(s, i)                what element i carries, for the report
-///     Real accuracy_to_judge(s, i)             optional: [m] to which positions must be solved before renew may judge element i
+///     Real load(s, i), void let_go(s, i, Memory&)   optional: [1] what element i bears over what it can hold, and how it is remembered
+///                                              from where it can no more
+///     Real accuracy_to_judge(s, i)             optional: [m] to which positions must be solved before let_go or renew may judge element i
 ///     Real Memory::engagement(adhesion)        [1] how much of a new pair's adhesion it has, for pictures
 ///     Memory::replaces_contact()               optional: while true the pair leaves contact and friction; CCD only keeps it from crossing
 ///   bool squares(s, i, add)                    the projected Hessian as sum of c g g^T: calls add(c, g) for each; false, and no call,

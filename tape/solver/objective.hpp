@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -87,7 +88,10 @@ class Objective {
   void recall(const EffectMemory& memory, const StateView& s, const detail::SurfaceView& surface);
   /// What is remembered of a step that ended at s.
   EffectMemory remember(const StateView& s, const detail::SampleQuery& samples);
-  /// [m] to which positions must be solved before `remember` may judge s; infinite if nothing is near a threshold.
+  /// Of what cannot hold what it bears at s, lets go, within the step, what bears more than half as much as the one that bears most: the
+  /// others may bear less then.  @return what effects remember that can let go; nothing if none did
+  std::optional<EffectMemory> let_go(const StateView& s, const detail::SurfaceView& surface);
+  /// [m] to which positions must be solved before `let_go` may judge s; infinite if nothing is near a threshold.
   Real accuracy_to_judge(const StateView& s);
   /// Energy [J] of what adheres.
   Real adhesive_energy(const StateView& s);

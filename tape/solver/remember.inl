@@ -105,6 +105,22 @@ struct Remembered {
   }
 };
 template <class T>
+struct Load {
+  T term;
+  StateView s;
+  TAPE_HD Real operator()(int i) const { return term.load(s, i); }
+};
+template <class T>
+struct LetGo {
+  T term;
+  StateView s;
+  Real above;  ///< [1] load
+  Span<typename T::Memory> memory;
+  TAPE_HD void operator()(int i) const {
+    if (term.load(s, i) > above) term.let_go(s, i, memory[i]);
+  }
+};
+template <class T>
 struct AccuracyToJudge {
   T term;
   StateView s;
@@ -169,6 +185,23 @@ inline EffectMemory Objective::remember(const StateView& s, const detail::Sample
     }
   });
   return memory;
+}
+
+inline std::optional<EffectMemory> Objective::let_go(const StateView& s, const detail::SurfaceView& surface) {
+  constexpr Real kShare = 0.5;
+  std::optional<EffectMemory> left;
+  for_each([&]<class T>(std::string_view, Term<T>& term) {
+    if constexpr (requires { term.view.load(s, 0); }) {
+      const Stopwatch watch(term.ms);
+      const Real most = reduce(term.memory.size(), 0.0, objective::Load<T>{term.view, s}, Larger{});
+      if (!(most > 1)) return;
+      parallel_for(term.memory.size(), objective::LetGo<T>{term.view, s, std::fmax(1, kShare * most), term.memory.span()});
+      parallel_for(term.memory.size(), objective::Recall<T>{term.view, s, surface, term.memory.span(), term.elements.span()});
+      if (!left) left.emplace();
+      std::get<MemoryOf<T>>(*left).pairs = term.memory.download();
+    }
+  });
+  return left;
 }
 
 inline Real Objective::accuracy_to_judge(const StateView& s) {

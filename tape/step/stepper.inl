@@ -314,7 +314,7 @@ class SideStepper final : public Stepper {
     close_grips(world_, next);
     begin(next, dt);
     if (!same(fronts(next), fronts_)) take_up(next);
-    if (newton(next, report)) {
+    if (solve_step(next, report)) {
       read_back(next, dt);
       add_progress(dt);
       renew_memory(next, dt, report);
@@ -385,7 +385,7 @@ class SideStepper final : public Stepper {
     objective_->recall(state.memory, s, search_->surface());
     const std::vector<VertexTriangle> replaced = pairs_out_of_contact(state.memory);
     regained_ = contact_energy(s, without(replaced_, replaced)) - contact_energy(s, without(replaced, replaced_));
-    report.adhesion_work += objective_->adhesive_energy(s) - adhesive + regained_;
+    report.adhesion_work += objective_->adhesive_energy(s) - adhesive + regained_ + let_go_energy_;
   }
   Real contact_energy(const StateView& s, const std::vector<VertexTriangle>& pairs) {
     return objective_->contact_energy(s, pairs, search_->surface());
@@ -422,18 +422,31 @@ class SideStepper final : public Stepper {
   /// Candidates and elements of a step that starts at now_ with this memory, before it has a direction: after a front has moved, the last
   /// one's blocks are other coordinates.
   void recall(const EffectMemory& memory) {
-    parallel_for(direction_.size(), stepping::Fill{direction_.span()});
-    if (!search_) return;
-    replaced_ = pairs_out_of_contact(memory);
-    search_->set_bonded(replaced_);  // makes the search start anew: its past must not change the order of sums
-    update_candidates(direction_.span());
+    search_without(pairs_out_of_contact(memory));
     if (fans_) objective_->recall(memory, view(now_), search_->surface());
   }
+  /// Candidates at now_ where these pairs have left contact.
+  void search_without(std::vector<VertexTriangle> replaced) {
+    parallel_for(direction_.size(), stepping::Fill{direction_.span()});
+    if (!search_) return;
+    replaced_ = std::move(replaced);
+    search_->set_bonded(replaced_);  // makes the search start anew: its past must not change the order of sums
+    update_candidates(direction_.span());
+  }
+  /// Lets go of what cannot hold what it bears at now_, so that no step ends with it: else a roll could give one row of bonds a step.
+  /// @return whether there was any
+  bool let_go() {
+    if (!fans_) return false;
+    const std::optional<EffectMemory> left = objective_->let_go(view(now_), search_->surface());
+    if (!left) return false;
+    search_without(pairs_out_of_contact(*left));
+    const Real before = std::exchange(energy_, energy(now_)).sum;
+    let_go_energy_ += energy_.sum - before;
+    return true;
+  }
 
-  /// Newton's method from now_ == start_, the start of a step at `state`, to its end.
-  bool newton(const State& state, StepReport& report) {
-    constexpr Real kOpening = 0.58;  // share of the slope by which a third or fourth power falls: 7/12, 0.602
-    const NewtonParams& params = world_.setup.newton;
+  /// From now_ == start_, the start of a step at `state`, to its end.
+  bool solve_step(const State& state, StepReport& report) {
     recall(state.memory);
     if (state.time == 0) recall(remember(0));  // at the start of a run pairs in the contact band are as engaged as new ones
     objective_->begin_step(view(now_));
@@ -442,6 +455,18 @@ class SideStepper final : public Stepper {
       energy_ = energy(now_);
     }
     if (!std::isfinite(energy_.sum)) return fail(report, "not finite at the start: " + objective_->first_non_finite(view(now_)));
+    let_go_energy_ = 0;
+    setting_out_ = articulations_.any();
+    do {
+      if (!newton(report)) return false;
+    } while (let_go());
+    return true;
+  }
+
+  /// Newton's method from now_ to the minimum.
+  bool newton(StepReport& report) {
+    constexpr Real kOpening = 0.58;  // share of the slope by which a third or fourth power falls: 7/12, 0.602
+    const NewtonParams& params = world_.setup.newton;
     Real previous = 0, last_update = 0, left = 0;
     const auto converged_to = [&] {  // of the substeps that count, the worst
       report.last_update = std::fmax(report.last_update, last_update);
@@ -449,7 +474,6 @@ class SideStepper final : public Stepper {
       return true;
     };
     overshot_ = false;
-    setting_out_ = articulations_.any();
     for (int k = 0; k < params.max_newton; ++k) {
       ++report.newton;
       if (!find_direction(report)) return false;
@@ -689,6 +713,7 @@ class SideStepper final : public Stepper {
   std::optional<SurfaceFans> fans_;      // where something adheres
   std::optional<BladeWatch> blades_;
   std::vector<VertexTriangle> replaced_;  // pairs that are out of contact in this step
+  Real let_go_energy_ = 0;                // [J] change of the energy by what was let go within the step
   Real regained_ = 0;                     // [J] energy of contact that the end of the step let back, beyond that of the candidates
   Articulations articulations_;
   Exchange exchange_;

@@ -14,7 +14,7 @@ using namespace robot;
 using test::own_prop;
 
 namespace {
-constexpr const char* kNames[] = {"table", "stand", "carton", "dispenser", "presser", "knife", "spindle", "bar"};
+constexpr const char* kNames[] = {"table", "stand", "carton", "dispenser", "presser", "swivel", "knife", "spindle", "bar"};
 
 /// A shape filled with 1 kg/m^3, in the link's frame. Closed forms for boxes and cylinders, whose meshes are inscribed.
 Inertial solid_of(const Shape& shape) {

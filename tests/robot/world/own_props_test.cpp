@@ -37,7 +37,7 @@ VecX sprung_back(const Model& carton) {
 }  // namespace
 
 TEST(OwnProps, EachStandsWhereItIsPutAndThoseOnAFootAlsoByTheirWeight) {
-  for (const std::string name : {"table", "stand", "carton", "dispenser", "presser", "knife"}) {
+  for (const std::string name : {"table", "stand", "carton", "dispenser", "presser", "swivel", "knife"}) {
     const Model prop = std::make_shared<RobotModel>(own_prop(name));
     const bool on_a_foot = name == "stand" || name == "carton" || name == "dispenser";
     const Pose X_WB(Eigen::Translation3d(0, 0, name == "table" ? 0.04 : 0.));  // its frame is on its upper surface

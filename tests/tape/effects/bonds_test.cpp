@@ -67,7 +67,7 @@ TEST(Bonds, ShearReachesTheBreakForceButNeverReleases) {  // 6.685185 g (1 + g^2
   for (Real g : {0.0743807329, 0.5}) {
     b.x[0] = b.start[0] + Vec3(g * kRest, 0, 0);
     EXPECT_NEAR(b.force().x(), -6.685185 * g * (1 + g * g), 1e-5 * g);
-    EXPECT_FALSE(b.bonds.gives_way(b.view(b.x), 0)) << "d = d_ref";
+    EXPECT_EQ(b.bonds.load(b.view(b.x), 0), 0) << "d = d_ref";
   }
 }
 TEST(Bonds, ARigidMotionCostsNothing) {
@@ -82,19 +82,21 @@ TEST(Bonds, ReleaseIsInTensionAtTheThresholdAndIsRememberedForAWhile) {
   b.law.cooldown = 2;
   ASSERT_TRUE(b.make());
   b.x[0].z() = 1.0354 * kRest;
-  EXPECT_TRUE(b.bonds.renew(b.view(b.x), 0, b.memory));
-  EXPECT_EQ(b.memory.cooldown, 0) << "just below 0.5 N";
+  EXPECT_LT(b.bonds.load(b.view(b.x), 0), 1) << "just below 0.5 N";
   EXPECT_LT(b.bonds.accuracy_to_judge(b.view(b.x), 0), 1e-6) << "0.5 N in 9 um";
   b.x[0].z() = 0.9 * kRest;
   EXPECT_GT(b.force().norm(), 0.5);
-  EXPECT_TRUE(b.bonds.renew(b.view(b.x), 0, b.memory));
-  EXPECT_EQ(b.memory.cooldown, 0) << "compression never releases";
+  EXPECT_EQ(b.bonds.load(b.view(b.x), 0), 0) << "compression never releases";
   b.x[0].z() = 1.0356 * kRest;
-  EXPECT_TRUE(b.bonds.renew(b.view(b.x), 0, b.memory));
-  EXPECT_EQ(b.memory.cooldown, 2);
+  EXPECT_GT(b.bonds.load(b.view(b.x), 0), 1);
+  EXPECT_TRUE(b.memory.replaces_contact());
+  b.bonds.let_go(b.view(b.x), 0, b.memory);
   EXPECT_FALSE(b.memory.replaces_contact());
   b.element = b.bonds.recall(b.memory, b.pair, b.view(b.x));
   EXPECT_EQ(b.bonds.energy(b.view(b.x), 0), 0);
+  EXPECT_EQ(b.bonds.load(b.view(b.x), 0), 0) << "it bears nothing any more";
+  EXPECT_TRUE(b.bonds.renew(b.view(b.x), 0, b.memory)) << "the end of its step";
+  EXPECT_EQ(b.memory.cooldown, 2);
   EXPECT_TRUE(b.bonds.renew(b.view(b.x), 0, b.memory));
   EXPECT_FALSE(b.bonds.renew(b.view(b.x), 0, b.memory)) << "forgotten: it may bond again";
 }

@@ -42,12 +42,16 @@ int remembered(const State& state) {
 }  // namespace
 
 TEST(Adhesion, HoldsAStripUnderACeilingAndWithoutItFalls) {
+  // Contact pushes off what bonds have let go, to the end of its band at 0.225 mm; two cells may hang over then: q L^4 / (8 D).
+  const Film film = test::vinyl();
+  const Real stiffness = film.bending_modulus * std::pow(film.thickness, 3) / (12 * (1 - film.poisson * film.poisson));  // [N m]
+  const Real overhang = film.density * film.thickness * 9.81 * std::pow(2 * 0.019 / 3, 4) / (8 * stiffness);             // [m]
   for (AdhesionLaw law : kLaws) {
     test::Simulation s(ceiling(law));
     s.run_to(0.3);
     EXPECT_TRUE(s.broken.empty()) << s.broken.front();
     EXPECT_GT(remembered(s.state()), 30);
-    EXPECT_GT(lowest(s), -3.2e-4) << to_text(law);
+    EXPECT_GT(lowest(s), law == AdhesionLaw::bond ? -2.25e-4 - overhang : -3.2e-4) << to_text(law);
     EXPECT_GT(s.report().adhesion[0].live, 30);
     const Real weight = 1300 * 1.8e-4 * 0.019 * 0.03 * 9.81;  // [N]
     EXPECT_LT(s.state().v[0].norm(), 1e-3);
@@ -193,6 +197,26 @@ TEST(BondedPair, PulledItReleasesAtTheThreshold) {
   });
   EXPECT_TRUE(corner.simulation.broken.empty()) << corner.simulation.broken.front();
   EXPECT_EQ(corner.bond().live, 0);
-  EXPECT_GT(last, 0.5);
-  EXPECT_LT(last, 0.5 + 0.02) << "in the step that passed 0.5 N";
+  EXPECT_LE(last, 0.5);
+  EXPECT_GT(last, 0.5 - 0.02) << "a step before that which passes 0.5 N";
+}
+/// A roll would else give one row a step, and pull with whatever it is pulled with.
+TEST(Adhesion, BondsLetGoWithinTheStepThatTheyCannotHold) {
+  tape::Setup setup = ceiling(AdhesionLaw::bond);
+  setup.scene.gravity.setZero();
+  Grip end = test::hold("end", {0, 1, 2, 3});
+  end.motion = {{0, 0.02, Vec3(0.02, 0, -0.02)}};  // 90 degrees; two steps, each farther than a cell is long
+  setup.scene.grips = {end};
+  test::Simulation s(setup);
+  const Real break_force = setup.scene.adhesives[0].adhesion.bond.break_force;
+  int before = remembered(s.state()), most = 0;
+  s.run_to(0.05, [&](const test::Simulation& now) {
+    const AdhesionReport& bonds = now.report().adhesion[0];
+    EXPECT_TRUE(now.report().ok);
+    EXPECT_LE(bonds.normal, bonds.live * break_force);
+    most = std::max(most, before - bonds.live);
+    before = bonds.live;
+  });
+  EXPECT_GT(most, 2 * 4) << "two columns of vertices";
+  EXPECT_GT(before, 4) << "a third of the strip is not peeled";
 }
