@@ -49,6 +49,25 @@ TEST_P(LongBoxSealing, MeetsItsConditionsWhereverTheBoxStands) {
 INSTANTIATE_TEST_SUITE_P(CohR, LongBoxSealing, testing::Combine(testing::Values("coh-r"), testing::Range(1, 11)));
 INSTANTIATE_TEST_SUITE_P(BondR, LongBoxSealing, testing::Combine(testing::Values("bond-r"), testing::Range(1, 11)));
 
+/// The control: the same script with tape that does not adhere.
+TEST(LongBoxControl, OnBoardThatHoldsNoTapeBothFlapsOpenAgainAndTheRunSaysSo) {
+  const Folder folder;
+  const Outcome outcome = tapesim({"run", TAPE_SOURCE_DIR "/data/scenes/box_sealing.yaml", "--threads", "1", "--set",
+                                   "interfaces.5.strength=1", "--set", "interfaces.5.toughness=0.001", "--out", (folder / "run").string()});
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+  const json report = json::parse(read(folder / "run" / "report.json"));
+  EXPECT_EQ(report["intersections"], 0);
+  EXPECT_EQ(report["newton"]["failed_steps"], 0);
+  int flaps = 0;
+  for (const json& condition : report["conditions"])
+    if (condition["name"] == "right_flap_rad" || condition["name"] == "left_flap_rad") {
+      EXPECT_FALSE(condition["met"]);
+      EXPECT_LT(condition["value"], (90 - 20) * std::numbers::pi / 180) << condition["name"];
+      ++flaps;
+    }
+  EXPECT_EQ(flaps, 2);
+}
+
 /// The hub is drawn up to 5 degrees aside, friction is up to 20 % higher or lower, the free tape up to 5 mm longer or shorter.
 TEST_P(LongPayout, PaysOutWithoutCrossingWhereverItIsDrawn) {
   const double aside = within(5 * std::numbers::pi / 180), friction = 1 + within(0.2), longer = within(0.005);
