@@ -1,6 +1,13 @@
 #include "tape/reduction/carriage.hpp"
 
 namespace tape {
+std::vector<int> next_to_free(const Cluster& cluster, const std::vector<bool>& member) {
+  std::vector<int> next;
+  for (std::size_t v = 0; v < member.size(); ++v)
+    if ((*cluster.distance)[v] == 1 && !member[v]) next.push_back(static_cast<int>(v));
+  return next;
+}
+
 Carriage carry(const Assembly& a, const std::vector<Cluster>& clusters, int collar) {
   Carriage c{.owner = a.owner, .local = a.local, .mass = a.mass, .body_mass = {}, .strips = {}, .next = {}, .blocks = a.first_strip_block};
   for (const BodyPart& body : a.bodies) c.body_mass.push_back(body.mass);
@@ -14,9 +21,7 @@ Carriage carry(const Assembly& a, const std::vector<Cluster>& clusters, int coll
       const Cluster& cluster = clusters[known++];
       member = members(a, strip, cluster, collar);
       c.body_mass[static_cast<std::size_t>(body)] = cluster.mass;
-      c.next.emplace_back();
-      for (int v = 0; v < strip.vertices; ++v)
-        if ((*cluster.distance)[static_cast<std::size_t>(v)] == 1 && !member[static_cast<std::size_t>(v)]) c.next.back().push_back(v);
+      c.next.push_back(next_to_free(cluster, member));
     }
     c.strips.push_back({c.blocks, 0});
     Real carried = 0;

@@ -17,6 +17,8 @@ struct Carriage {
   std::vector<std::vector<int>> next;  ///< [clusters] collar vertices one edge from the free tape, counted from the strip's first
   int blocks = 0;
 };
+/// Vertices that are one edge from the free tape and no members, counted from the strip's first.
+std::vector<int> next_to_free(const Cluster& cluster, const std::vector<bool>& member);
 /// @param clusters  in the order of the bodies that they are
 Carriage carry(const Assembly& assembly, const std::vector<Cluster>& clusters, int collar);
 }  // namespace tape

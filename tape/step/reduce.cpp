@@ -175,15 +175,19 @@ bool advance_fronts(const World& world, const Carriage& carriage, const State& b
     const std::vector<Bonds::Memory>& bonds = std::get<MemoryOf<Bonds>>(after.memory).pairs;
     if (bonded) mark_released(view, std::get<MemoryOf<Bonds>>(before.memory).pairs, bonds, cluster);
     const Real delta = world.setup.scene.cluster.gate_distance * world.setup.scene.dhat();
-    const std::vector<int> free =
-        pass_front(view, cluster, carriage.next[k], world.setup.scene.cluster.gate, delta, bonded ? &bonds : nullptr);
+    const auto pass = [&](const std::vector<int>& next) {
+      return pass_front(view, cluster, next, world.setup.scene.cluster.gate, delta, bonded ? &bonds : nullptr);
+    };
+    std::vector<int> free = pass(carriage.next[k]);
     if (free.empty()) continue;
     moved = true;
     const std::vector<bool> was = members(world.assembly, at.strip, cluster, collar(world));
-    std::vector<int> distance = *cluster.distance;
-    at.graph.spread(free, distance);
-    cluster.distance = std::make_shared<const std::vector<int>>(std::move(distance));
-    for (int v : free) cluster.released.erase(v);
+    for (; !free.empty(); free = pass(next_to_free(cluster, was))) {  // as far as tape could bend in the step
+      std::vector<int> distance = *cluster.distance;
+      at.graph.spread(free, distance);
+      cluster.distance = std::make_shared<const std::vector<int>>(std::move(distance));
+      for (int v : free) cluster.released.erase(v);
+    }
     let_go(world, at, was, after);
     put_to_sleep(world, at, after);
   }
