@@ -33,6 +33,13 @@ struct SurfaceView {
   // Whether all of a primitive belongs to one cluster.
   TAPE_HD bool triangle_sleeps(int t) const { return triangle_carrier[t] >= 0 && member[triangles[t].v[0]] != 0; }
   TAPE_HD bool edge_sleeps(int e) const { return edge_carrier[e] >= 0 && member[edges[e].v[0]] != 0; }
+  /// Whether a vertex rests on the cluster of its frame, by the body that carries its whole primitive: it has no pairs with what sleeps
+  /// there.
+  TAPE_HD bool rests(int v, int carrier) const {
+    if (carrier < 0 || vertex_frame[v] == kWorld || member[v] != 0) return false;
+    const int first = lead[vertex_frame[v]];
+    return member[first] != 0 && vertex_carrier[first] == carrier;
+  }
   /// Whether what two vertices belong to is kept apart by somebody else.
   TAPE_HD bool kept_apart(int v, int w) const { return apart.size > 0 && apart[vertices[v].object * objects + vertices[w].object] != 0; }
   TAPE_HD bool shuns_outside(int v) const { return shuns.size > 0 && shuns[vertices[v].object] != 0; }
@@ -112,7 +119,8 @@ struct Viewpoint {
   /// Whether the vertex cannot move there, so that its box stays what it is.
   TAPE_HD bool still(int v) const {
     const int k = frame(v), carrier = s.vertex_carrier[v];
-    return k == kWorld ? carrier == kFixed : carrier >= 0 && carrier == s.vertex_carrier[s.lead[k]];
+    if (k == kWorld) return carrier == kFixed;
+    return carrier >= 0 && carrier == s.vertex_carrier[s.lead[k]] && s.member[v] == s.member[s.lead[k]];  // what rests on it is not quite
   }
 };
 struct MakeTrust {
@@ -418,8 +426,9 @@ struct VertexQuery {
       return seen ? query_box(sight.box(s, v), 0, s.vertex_carrier[v] == kFixed) : empty_query();
     };
     const Lanes own_box = box(nearness.own, frame != kWorld), world_box = box(nearness.world, nearness.world.trust.size > 0);
+    const Lanes asleep_box = s.rests(v, s.vertex_carrier[v]) ? empty_query() : own_box;
     const auto sleeps = [&](int t) { return s.triangle_sleeps(t); };
-    trees.visit(frame, s.member[v] == 0, s.shuns_outside(v), own_box, own_box, world_box, sleeps, [&](int t, bool together) {
+    trees.visit(frame, s.member[v] == 0, s.shuns_outside(v), own_box, asleep_box, world_box, sleeps, [&](int t, bool together) {
       if (nearness.vertex_triangle(v, t, together)) f(t);
     });
   }
@@ -435,6 +444,7 @@ struct SleeperQuery {
   TAPE_HD void visit(int k, F&& f) const {
     const SurfaceView& s = nearness.s;
     const int t = list[k];
+    if (s.rests(s.triangles[t].v[0], s.triangle_carrier[t])) return;
     asleep.visit(query_box(nearness.own.box(s, s.triangles[t]), 0, s.triangle_carrier[t] == kFixed), [&](int v) {
       if (s.member[v] != 0 && nearness.vertex_triangle(v, t, true)) f(v);
     });
@@ -485,7 +495,8 @@ struct EdgeQuery {
     const auto box = [&](const Sight& sight, int first, bool seen) {
       return seen ? query_box(sight.box(s, s.edges[i]), first, carrier == kFixed) : empty_query();
     };
-    const Lanes own_box = box(nearness.own, i + 1, frame != kWorld), asleep_box = box(nearness.own, 0, frame != kWorld);
+    const Lanes own_box = box(nearness.own, i + 1, frame != kWorld);
+    const Lanes asleep_box = box(nearness.own, 0, frame != kWorld && !s.rests(s.edges[i].v[0], carrier));
     const Lanes world_box = box(nearness.world, i + 1, nearness.world.trust.size > 0);
     const auto sleeps = [&](int e) { return s.edge_sleeps(e); };
     trees.visit(frame, !s.edge_sleeps(i), s.shuns_outside(s.edges[i].v[0]), own_box, asleep_box, world_box, sleeps,

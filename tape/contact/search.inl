@@ -15,7 +15,7 @@ inline ContactSearch::ContactSearch(const SurfaceMesh& mesh, Real dhat, Real gua
 inline void ContactSearch::set_carriage(const SurfaceCarriage& carriage) {
   mesh_.owner = carriage.owner, mesh_.follows = carriage.follows;
   const std::vector<int> slept = surface_.asleep.vertices.download();
-  surface_.set_carriage(mesh_, carriage.clusters);
+  surface_.set_carriage(mesh_, carriage.clusters, carriage.resting);
   groups_ = ObjectGroups(mesh_);
   component_.upload(groups_.component_of_object);
   block_object_.upload(groups_.object_of_block);

@@ -31,10 +31,11 @@ struct SurfaceTriangle {
 
 /// What carries the vertices of a surface, as long as no cluster loses a member.
 struct SurfaceCarriage {
-  std::vector<VertexOwner> owner;  ///< [nv]
-  std::vector<int> follows;        ///< [objects] as SurfaceMesh::follows
-  std::vector<Vec3> home;          ///< [nv] m, where members of clusters are in a frame of their cluster that never changes
-  std::map<int, Vec3> clusters;    ///< bodies that are clusters: members follow them for good; [m] their centre of mass in that frame
+  std::vector<VertexOwner> owner;   ///< [nv]
+  std::vector<int> follows;         ///< [objects] as SurfaceMesh::follows
+  std::vector<Vec3> home;           ///< [nv] m, where members of clusters are in a frame of their cluster that never changes
+  std::map<int, Vec3> clusters;     ///< bodies that are clusters: members follow them for good; [m] their centre of mass in that frame
+  std::map<int, int> resting = {};  ///< bodies that rest on a cluster, whatever little they move: the two never form a pair
 };
 
 /// Objects that one articulation moves, and its own blocks of unknowns.

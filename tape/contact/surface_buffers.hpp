@@ -108,7 +108,7 @@ struct SurfaceBuffers {
                                        mesh.apart.begin() + static_cast<std::ptrdiff_t>(mesh.apart.empty() ? 0 : (o + 1) * n),
                                        [](char c) { return c != 0; }));
     set_apart(mesh.apart);
-    set_carriage(mesh, {});
+    set_carriage(mesh, {}, {});
   }
   void set_apart(const std::vector<char>& matrix) {
     const std::size_t n = is_outside.size();
@@ -121,9 +121,16 @@ struct SurfaceBuffers {
     apart.upload(matrix), shuns.upload(all);
   }
   /// Sorts the primitives by what they follow and whether they sleep: whether all their vertices are members of a cluster.
-  void set_carriage(const SurfaceMesh& mesh, const std::map<int, Vec3>& clusters) {
+  /// @param clusters, resting  as of SurfaceCarriage
+  void set_carriage(const SurfaceMesh& mesh, const std::map<int, Vec3>& clusters, const std::map<int, int>& resting) {
     const Carriers carriers(mesh);
-    vertex_carrier.upload(carriers.vertex), edge_carrier.upload(carriers.edge), triangle_carrier.upload(carriers.triangle);
+    const auto as_one = [&](std::vector<int> carrier) {
+      for (int& body : carrier)
+        if (const auto on = resting.find(body); on != resting.end()) body = on->second;
+      return carrier;
+    };
+    vertex_carrier.upload(as_one(carriers.vertex));
+    edge_carrier.upload(as_one(carriers.edge)), triangle_carrier.upload(as_one(carriers.triangle));
     const Frames frames(mesh, carriers, clusters);
     vertex_frame.upload(frames.vertex), lead.upload(frames.lead), home.upload(frames.home);
     std::vector<char> sleeps;

@@ -60,8 +60,9 @@ struct Bonds {
   TAPE_HD inline Real load(const StateView& s, int i) const;
   /// The end of the step is the first that the cooldown counts.
   TAPE_HD void let_go(const StateView& s, int i, Memory& m) const { m.cooldown = s.adhesion[elements[i].pair.interface].bond.cooldown + 1; }
-  /// Near its release the force of a bond must be known to a twentieth, or errors of the solver release it: stiffness 8 V kappa_b/h^2.
+  /// Near its release the force of a bond must be known to a twentieth, or errors of the solver release it.
   TAPE_HD inline Real accuracy_to_judge(const StateView& s, int i) const;
+  TAPE_HD inline Real slack(const StateView& s, int i) const;
   TAPE_HD inline AdhesiveForce force(const StateView& s, int i) const;
 
  private:
@@ -73,6 +74,8 @@ struct Bonds {
   TAPE_HD static inline Vec3 row(const Element& e, int k);
   TAPE_HD static inline VecN<12> bond_gradient(const Element& e, const StateView& s);
   TAPE_HD inline Jet guard(const Element& e, const PairState& p) const;
+  /// [m] by which an unloaded bond is stretched where it breaks, by its stiffness 8 V kappa_b/h^2.
+  TAPE_HD inline Real stretch_to_break(const StateView& s, int i) const;
 };
 static_assert(Effect<Bonds>);
 }  // namespace tape

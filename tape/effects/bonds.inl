@@ -53,9 +53,15 @@ TAPE_HD Real Bonds::load(const StateView& s, int i) const {
   return bond_gradient(e, s).head<3>().norm() / s.adhesion[e.pair.interface].bond.break_force;
 }
 TAPE_HD Real Bonds::accuracy_to_judge(const StateView& s, int i) const {
+  return load(s, i) > 0.8 ? 0.05 * stretch_to_break(s, i) : std::numeric_limits<Real>::infinity();
+}
+TAPE_HD Real Bonds::slack(const StateView& s, int i) const {
+  if (!(elements[i].stiffness > 0)) return 0;
+  return std::fmax(1 - load(s, i), 0) * stretch_to_break(s, i);
+}
+TAPE_HD Real Bonds::stretch_to_break(const StateView& s, int i) const {
   const Element& e = elements[i];
-  if (!(load(s, i) > 0.8)) return std::numeric_limits<Real>::infinity();
-  return 0.05 * s.adhesion[e.pair.interface].bond.break_force * e.rest * e.rest / (8 * e.stiffness);
+  return s.adhesion[e.pair.interface].bond.break_force * e.rest * e.rest / (8 * e.stiffness);
 }
 TAPE_HD AdhesiveForce Bonds::force(const StateView& s, int i) const {
   const Element& e = elements[i];

@@ -62,6 +62,8 @@ struct Cohesion {
   TAPE_HD inline bool begin(const ContactPair& pair, const StateView& s, Memory& out) const;
   /// What element i remembers at the end of a step. @return false: the pair is dropped
   TAPE_HD inline bool renew(const StateView& s, int i, Memory& m) const;
+  /// To where beta may fall or the pair is dropped. Where beta grows, or slip is that of each step, it changes in time.
+  TAPE_HD inline Real slack(const StateView& s, int i) const;
   TAPE_HD inline AdhesiveForce force(const StateView& s, int i) const;
   /// d beta/dt [1/s].  Source: [the paper, eq. 3], without a gain where the barrier has no compression to compare with.
   /// @param slip2  [m^2] |u|^2

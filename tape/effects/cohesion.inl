@@ -70,6 +70,16 @@ TAPE_HD bool Cohesion::renew(const StateView& s, int i, Memory& m) const {
   m.slip = a.slip == SlipFrom::bonding ? e.lagged.remembered(u, s) : Vec3(Vec3::Zero());
   return true;
 }
+TAPE_HD Real Cohesion::slack(const StateView& s, int i) const {
+  const Element& e = elements[i];
+  const PairCohesion& a = s.adhesion[e.pair.interface].pair;
+  const Real d = PairState::at(e.pair, s.x).d, slip2 = slip(s, i).squaredNorm(), whole = a.cn / dhat;
+  const bool grows = e.opening < whole && rate(a, e.pair, std::sqrt(e.opening / whole), d, slip2) > 0;
+  if (a.slip == SlipFrom::step || grows) return 0;
+  const Real ratio = std::sqrt(a.ct / a.cn), strain = 2 / dhat * std::hypot(std::fmax(d - e.rest, 0), ratio * std::sqrt(slip2));
+  const Real to_loss = (std::sqrt(a.work) - strain) * dhat / (2 * std::fmax(1, ratio));  // strain^2 is a_n + a_t of `rate`
+  return std::fmax(std::fmin(to_loss, a.drop * dhat - (d - e.rest)), 0);
+}
 TAPE_HD AdhesiveForce Cohesion::force(const StateView& s, int i) const {
   const Element& e = elements[i];
   return {.interface = e.pair.interface,

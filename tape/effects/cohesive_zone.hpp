@@ -102,6 +102,8 @@ struct CohesiveZone {
   TAPE_HD inline bool renew(const StateView& s, int i, Memory& m) const;
   /// What opens on must be known to a fiftieth of the final opening, or errors of the solver tear it.
   TAPE_HD inline Real accuracy_to_judge(const StateView& s, int i) const;
+  /// To where traction softens.
+  TAPE_HD inline Real slack(const StateView& s, int i) const;
   TAPE_HD inline AdhesiveForce force(const StateView& s, int i) const;
 
  private:

@@ -118,6 +118,10 @@ TAPE_HD Real CohesiveZone::accuracy_to_judge(const StateView& s, int i) const {
   const bool near = Opening(e, plane(e, s.x)).delta() > e.zone.knee / 2;
   return near ? 0.02 * e.zone.final : std::numeric_limits<Real>::infinity();
 }
+TAPE_HD Real CohesiveZone::slack(const StateView& s, int i) const {
+  const Element& e = elements[i];
+  return std::fmax(e.zone.knee - Opening(e, plane(e, s.x)).delta(), 0) / std::fmax(1, std::sqrt(e.shear));
+}
 TAPE_HD AdhesiveForce CohesiveZone::force(const StateView& s, int i) const {
   const Element& e = elements[i];
   const auto at = plane(e, s.x);

@@ -37,6 +37,8 @@ namespace tape {
 ///     Real load(s, i), void let_go(s, i, Memory&)   optional: [1] what element i bears over what it can hold, and how it is remembered
 ///                                              from where it can no more
 ///     Real accuracy_to_judge(s, i)             optional: [m] to which positions must be solved before let_go or renew may judge element i
+///     Real slack(s, i)                         [m] by which the sides of the pair may move against each other before what it can hold
+///                                              changes; 0: it does so in time as well
 ///     Real Memory::engagement(adhesion)        [1] how much of a new pair's adhesion it has, for pictures
 ///     Memory::replaces_contact()               optional: while true the pair leaves contact and friction; CCD only keeps it from crossing
 ///   bool squares(s, i, add)                    the projected Hessian as sum of c g g^T: calls add(c, g) for each; false, and no call,
@@ -73,6 +75,7 @@ concept Remembers = requires(const T& term, typename T::Memory& m, const typenam
   { term.renew(s, i, m) } -> std::same_as<bool>;
   { term.begin(pair, s, m) } -> std::same_as<bool>;
   { term.force(s, i) } -> std::same_as<AdhesiveForce>;
+  { term.slack(s, i) } -> std::same_as<Real>;
   { m.engagement(s.adhesion[0]) } -> std::same_as<Real>;
   requires std::derived_from<typename T::Memory, typename T::Pair::Name>;
 };

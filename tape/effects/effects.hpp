@@ -15,13 +15,14 @@
 #include "tape/effects/gravity.hpp"
 #include "tape/effects/inertia.hpp"
 #include "tape/effects/membrane.hpp"
+#include "tape/effects/seat.hpp"
 #include "tape/effects/tether.hpp"
 
 namespace tape {
 /// The one list of effects. Reading and writing scenes, checks, assembly on both back ends, timing, reports and the tests that hold
 /// for all of them follow from it.
 using Effects = std::tuple<Inertia, BodyInertia, BodyDrive, Gravity, Membrane, Bending, Barrier, Friction, Cohesion, CohesiveZone, Bonds,
-                           Tether, Axle, AxleTorque>;
+                           Tether, Axle, AxleTorque, Seat>;
 
 /// The settings of one effect, told apart by the effect even where two have none.
 template <class T>

@@ -14,4 +14,5 @@
 #include "tape/effects/gravity.inl"
 #include "tape/effects/inertia.inl"
 #include "tape/effects/membrane.inl"
+#include "tape/effects/seat.inl"
 #include "tape/effects/tether.inl"

@@ -15,12 +15,16 @@ struct ClusterParams {
   int collar = 10;
   Gate gate = Gate::euclidean;
   Real gate_distance = 5;
+  Real seat = 0.2;
   template <class F>
   void fields(F&& f) {
     f("collar", collar, "1", Range::closed(1, 1000), "N, edges of the mesh between the cluster and the free tape; at 1 it never moves");
     f("gate", gate, "", Range::any(), "motion of a collar vertex that counts: all of it, or along the roll's radius");
     f("gate_distance", gate_distance, "1", Range::above(0, 1e4),
       "delta, motion at which a collar vertex may become free, in units of dhat");
+    f("seat", seat, "1", Range::closed(0, 0.25),
+      "part of the smallest gap between cluster and hub by which they may move against each other while their pairs sleep; 0: they never "
+      "do");
   }
 };
 }  // namespace tape

@@ -41,13 +41,8 @@ Cluster form_cluster(const Assembly& assembly, const StripPart& strip, const Str
   std::vector<int> distance(static_cast<std::size_t>(strip.vertices), collar);
   const auto along = [&](int v) { return at(assembly.rest, strip.first_vertex + v).x(); };
   Real last = -std::numeric_limits<Real>::infinity(), end = last;
-  EffectMemory pairs = memory;
-  for_each_memory(pairs, [&](const auto& remembered) {
-    for (const auto& pair : remembered)
-      for_each_vertex(assembly, samples, pair, [&](int v) {
-        if (v >= strip.first_vertex && v < strip.first_vertex + strip.vertices) last = std::max(last, along(v - strip.first_vertex));
-      });
-  });
+  for (int v : vertices_of(assembly, samples, memory))
+    if (v >= strip.first_vertex && v < strip.first_vertex + strip.vertices) last = std::max(last, along(v - strip.first_vertex));
   for (int v = 0; v < strip.vertices; ++v) end = std::max(end, along(v));
   std::vector<int> free;
   constexpr Real kEdge = 1e-9;  // [m]
@@ -75,8 +70,16 @@ void weigh(const Assembly& assembly, const StripPart& strip, const std::vector<b
   for_each_member([&](Real m, const Vec3& y) { cluster.mass.second += m * (y - cluster.centre) * (y - cluster.centre).transpose(); });
 }
 
-void sort_pairs(const Assembly& assembly, const std::vector<VertexOwner>& owner, int body, int samples, EffectMemory& awake,
-                EffectMemory& asleep) {
+std::vector<int> vertices_of(const Assembly& assembly, int samples, EffectMemory memory) {
+  std::vector<int> vertices;
+  for_each_memory(memory, [&](const auto& remembered) {
+    for (const auto& pair : remembered) for_each_vertex(assembly, samples, pair, [&](int v) { vertices.push_back(v); });
+  });
+  return vertices;
+}
+
+void sort_pairs(const Assembly& assembly, const std::vector<VertexOwner>& owner, const std::vector<int>& bodies, int samples,
+                EffectMemory& awake, EffectMemory& asleep) {
   const auto sort = [&]<class T>(MemoryOf<T>& up, MemoryOf<T>& down) {
     if constexpr (Remembers<T>) {
       auto all = std::move(up.pairs);
@@ -85,7 +88,7 @@ void sort_pairs(const Assembly& assembly, const std::vector<VertexOwner>& owner,
       up.pairs.clear(), down.pairs.clear();
       for (const auto& pair : all) {
         bool rigid = true;
-        for_each_vertex(assembly, samples, pair, [&](int v) { rigid &= at(owner, v).body == body; });
+        for_each_vertex(assembly, samples, pair, [&](int v) { rigid &= std::ranges::count(bodies, at(owner, v).body) > 0; });
         (rigid ? down : up).pairs.push_back(pair);
       }
     }

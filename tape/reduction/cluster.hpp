@@ -5,6 +5,7 @@
 
 #include "tape/bodies/assembly.hpp"
 #include "tape/effects/effects.hpp"
+#include "tape/reduction/rest.hpp"
 #include "tape/reduction/strip_graph.hpp"
 
 namespace tape {
@@ -18,7 +19,8 @@ struct Cluster {
   std::set<int> released;                 ///< vertices that a bond of the wound roll has let go, and which are not free yet
   Vec3 centre = Vec3::Zero();             ///< [m] centre of mass of the members, a y
   BodyMass mass = {1, Mat3::Identity()};  ///< of the members, about the centre
-  /// of pairs between members
+  std::shared_ptr<const Rest> rest;       ///< on the hub; null: it is awake there
+  /// of pairs between members, and where it rests of members with the hub
   std::shared_ptr<const EffectMemory> asleep = std::make_shared<const EffectMemory>();
 };
 
@@ -34,9 +36,12 @@ Cluster form_cluster(const Assembly& assembly, const StripPart& strip, const Str
 /// Centre and mass of the members.
 void weigh(const Assembly& assembly, const StripPart& strip, const std::vector<bool>& member, Cluster& cluster);
 
-/// Brings to `awake` what of the pairs in it and in `asleep` spans a vertex that is not carried by `body`, and to `asleep` the rest; both
-/// sorted.
+/// Vertices of what is remembered, each as often as it occurs.
 /// @param samples  to the side of a triangle, of cohesive zones
-void sort_pairs(const Assembly& assembly, const std::vector<VertexOwner>& owner, int body, int samples, EffectMemory& awake,
-                EffectMemory& asleep);
+std::vector<int> vertices_of(const Assembly& assembly, int samples, EffectMemory memory);
+
+/// Brings to `awake` what of the pairs in it and in `asleep` spans a vertex that none of these bodies carries, and to `asleep` the rest;
+/// both sorted.
+void sort_pairs(const Assembly& assembly, const std::vector<VertexOwner>& owner, const std::vector<int>& bodies, int samples,
+                EffectMemory& awake, EffectMemory& asleep);
 }  // namespace tape

@@ -93,6 +93,15 @@ class Objective {
   std::optional<EffectMemory> let_go(const StateView& s, const detail::SurfaceView& surface);
   /// [m] to which positions must be solved before `let_go` may judge s; infinite if nothing is near a threshold.
   Real accuracy_to_judge(const StateView& s);
+  /// Pairs that are remembered, recalled where `from` is and renewed where `to` is; of both x_start is x of `from`.
+  EffectMemory renewed(const EffectMemory& memory, const StateView& from, const StateView& to, const detail::SurfaceView& surface);
+  /// Energy that is stored in the pairs between two bodies as one of them moves, by its displacement at a point [m] and its rotation, in
+  /// the world's axes.
+  PlaceForm between(const StateView& s, int standing, int moving, const Vec3& about);
+  /// [m] least slack of what is remembered between two bodies.
+  Real slack_between(const StateView& s, int standing, int moving);
+  /// What holds clusters where they rest. To be followed by set_carriage().
+  void set_seats(const std::vector<Seat::Element>& seats);
   /// Energy [J] of what adheres.
   Real adhesive_energy(const StateView& s);
   /// Energy [J] of contact of these pairs, whether they are candidates or not.

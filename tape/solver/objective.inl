@@ -1,4 +1,6 @@
 #pragma once
+#include <limits>
+
 #include "tape/core/functors.hpp"
 #include "tape/effects/effects.inl"
 #include "tape/solver/objective.hpp"
@@ -206,6 +208,70 @@ struct FillSlots {
     return false;
   }
 };
+
+/// Whether an element joins two bodies and nothing else: elements of one body alone there are none that are awake.
+struct Joins {
+  int standing, moving;
+  template <int K>
+  TAPE_HD bool operator()(const Stencil<K>& stencil, const StateView& s) const {
+    for (int v : stencil.id)
+      if (const int body = s.owner[v].body; body != standing && body != moving) return false;
+    return true;
+  }
+};
+/// Adds c (J^T g) (J^T g)^T, of a motion of one body, to a matrix.
+template <class Motion>
+struct AddMotionSquare {
+  const Motion& of;
+  MatN<6, 6>& out;
+  template <class G>
+  TAPE_HD void operator()(Real c, const G& g) const {
+    const VecN<6> j = of(g);
+    out += c * j * j.transpose();
+  }
+};
+/// Element i by the motion of one of two bodies.
+template <class T>
+struct FormBetween {
+  T term;
+  StateView s;
+  Joins joins;
+  Vec3 about;
+  TAPE_HD PlaceForm operator()(int i) const {
+    constexpr int K = stencil_size<T>;
+    PlaceForm form;
+    const Stencil<K> stencil = term.stencil(i);
+    if (!joins(stencil, s)) return form;
+    form.energy = term.energy(s, i);
+    if constexpr (requires { term.active(s, i); })
+      if (!term.active(s, i)) return form;
+    const auto moves = [&](const VecN<3 * K>& g) {
+      VecN<6> sum = VecN<6>::Zero();
+      for (int k = 0; k < K; ++k) {
+        if (s.owner[stencil.id[k]].body != joins.moving) continue;
+        const Vec3 f = g.template segment<3>(3 * k), arm = s.x[stencil.id[k]] - about;
+        sum.template head<3>() += f, sum.template tail<3>() += arm.cross(f);
+      }
+      return sum;
+    };
+    form.force = moves(term.gradient(s, i));
+    const AddMotionSquare<decltype(moves)> add{moves, form.stiffness};
+    if constexpr (requires { term.squares(s, i, add); })
+      if (term.squares(s, i, add)) return form;
+    const MatN<3 * K, 3 * K> h = term.hessian(s, i, HessianMode::projected);
+    MatN<3 * K, 6> column;
+    for (int c = 0; c < 3 * K; ++c) column.row(c) = moves(h.col(c)).transpose();
+    for (int c = 0; c < 6; ++c) form.stiffness.col(c) += moves(column.col(c));
+    return form;
+  }
+};
+template <class T>
+struct SlackBetween {
+  T term;
+  StateView s;
+  Joins joins;
+  TAPE_HD Real operator()(int i) const { return joins(term.stencil(i), s) ? term.slack(s, i) : std::numeric_limits<Real>::infinity(); }
+};
 }  // namespace objective
 
 inline Objective::Objective(const Scene& scene, const EffectParams& effects, const Assembly& assembly, const std::vector<bool>& on) {
@@ -249,6 +315,35 @@ inline void Objective::begin_step(const StateView& s) {
       parallel_for(candidates_.size, objective::MakeLagged<T>{term.view, s, candidates_, scratch_.span(), term.elements.span()});
     }
   });
+}
+
+inline void Objective::set_seats(const std::vector<Seat::Element>& seats) {
+  for_each([&]<class T>(std::string_view, Term<T>& term) {
+    if constexpr (std::is_same_v<T, Seat>) {
+      term.elements.upload(seats);
+      term.view.elements = term.elements.span();
+    }
+  });
+}
+
+inline PlaceForm Objective::between(const StateView& s, int standing, int moving, const Vec3& about) {
+  PlaceForm form;
+  for_each([&]<class T>(std::string_view, Term<T>& term) {
+    if constexpr (is_contact<T> && !requires { T::incremental; }) {
+      const objective::FormBetween<T> kernel{term.view, s, {standing, moving}, about};
+      form = form + reduce(term.view.elements.size, PlaceForm{}, kernel, Plus{});
+    }
+  });
+  return form;
+}
+
+inline Real Objective::slack_between(const StateView& s, int standing, int moving) {
+  Real least = std::numeric_limits<Real>::infinity();
+  for_each([&]<class T>(std::string_view, Term<T>& term) {
+    if constexpr (Remembers<T>)
+      least = reduce(term.view.elements.size, least, objective::SlackBetween<T>{term.view, s, {standing, moving}}, Smaller{});
+  });
+  return least;
 }
 
 inline EnergySum Objective::energy(const StateView& s) {

@@ -72,6 +72,15 @@ auto candidates_of(const Term<T>& term, Span<const ContactPair> pairs, const det
   }
 }
 
+/// None.
+struct NoCandidates {
+  int size = 0;
+  template <class T>
+  TAPE_HD bool begin(int, const T&, const StateView&, Span<const typename T::Memory>, typename T::Memory&) const {
+    return false;
+  }
+};
+
 /// Flags what is remembered after the step: pairs that were, then candidates that were not.
 template <class T, class Candidates>
 struct Judge {
@@ -185,6 +194,29 @@ inline EffectMemory Objective::remember(const StateView& s, const detail::Sample
     }
   });
   return memory;
+}
+
+inline EffectMemory Objective::renewed(const EffectMemory& memory, const StateView& from, const StateView& to,
+                                       const detail::SurfaceView& surface) {
+  EffectMemory out;
+  for_each([&]<class T>(std::string_view, Term<T>& term) {
+    if constexpr (Remembers<T>) {
+      const Buffer<typename T::Memory> before(std::get<MemoryOf<T>>(memory).pairs);
+      const int n = before.size();
+      Buffer<typename T::Memory> after;
+      Buffer<typename T::Element> elements;
+      after.resize(n), elements.resize(n), scratch_.resize(n + 1);
+      parallel_for(n, objective::Recall<T>{term.view, from, surface, before.span(), elements.span()});
+      T view = term.view;
+      view.elements = elements.span();
+      parallel_for(n + 1, objective::Judge<T, objective::NoCandidates>{view, to, before.span(), {}, after.span(), scratch_.span()});
+      const std::vector<typename T::Memory> renewed = after.download();
+      const std::vector<int> kept = scratch_.download();
+      for (std::size_t i = 0; i < renewed.size(); ++i)
+        if (kept[i] != 0) std::get<MemoryOf<T>>(out).pairs.push_back(renewed[i]);
+    }
+  });
+  return out;
 }
 
 inline std::optional<EffectMemory> Objective::let_go(const StateView& s, const detail::SurfaceView& surface) {

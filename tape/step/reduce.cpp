@@ -28,11 +28,27 @@ int collar(const World& world) { return world.setup.scene.cluster.collar; }
 
 Mat3 inertia_in_world(const BodyMass& mass, const Mat3& R) { return R * inertia_tensor(mass.second) * R.transpose(); }
 
+/// Bodies of which no pairs are awake: the cluster, and its hub if it rests there.
+std::vector<int> as_one(const ClusterPlace& at, const Cluster& cluster) {
+  std::vector<int> bodies{static_cast<int>(at.body)};
+  if (cluster.rest) bodies.push_back(at.roll.winding->hub);
+  return bodies;
+}
 void put_to_sleep(const World& world, const ClusterPlace& at, State& state) {
   const Carriage c = carry(world, state);
-  EffectMemory asleep = *state.clusters[at.cluster].asleep;
-  sort_pairs(world.assembly, c.owner, static_cast<int>(at.body), samples(world), state.memory, asleep);
-  state.clusters[at.cluster].asleep = std::make_shared<const EffectMemory>(std::move(asleep));
+  Cluster& cluster = state.clusters[at.cluster];
+  EffectMemory asleep = *cluster.asleep;
+  sort_pairs(world.assembly, c.owner, as_one(at, cluster), samples(world), state.memory, asleep);
+  cluster.asleep = std::make_shared<const EffectMemory>(std::move(asleep));
+}
+
+/// [m] about its centre.
+Real hub_radius(const World& world, std::size_t hub) {
+  const BodyPart& part = world.assembly.bodies[hub];
+  Real radius = 0;
+  for (int v = part.first_vertex; v < part.first_vertex + part.vertices; ++v)
+    radius = std::max(radius, world.assembly.local[static_cast<std::size_t>(v)].norm());
+  return radius;
 }
 
 /// Gives a cluster the momentum of its members.
@@ -77,7 +93,8 @@ SurfaceCarriage surface_carriage(const World& world, const State& state, const C
   SurfaceCarriage out{.owner = {carriage.owner.begin(), carriage.owner.begin() + world.assembly.surface_vertices},
                       .follows = world.surface.follows,
                       .home = {},
-                      .clusters = {}};
+                      .clusters = {},
+                      .resting = {}};
   if (!state.clusters.empty()) out.home.resize(out.owner.size(), Vec3::Zero());
   for (std::size_t k = 0; k < state.clusters.size(); ++k) {
     const ClusterPlace at = place_of(world, k);
@@ -85,6 +102,7 @@ SurfaceCarriage surface_carriage(const World& world, const State& state, const C
     const auto hub = world.assembly.strips.size() + static_cast<std::size_t>(at.roll.winding->hub);
     out.follows[static_cast<std::size_t>(at.part.cluster_of)] = out.follows[hub] = static_cast<int>(at.body);
     out.clusters[static_cast<int>(at.body)] = state.clusters[k].centre;
+    if (state.clusters[k].rest) out.resting[at.roll.winding->hub] = static_cast<int>(at.body);
     std::ranges::copy(*state.clusters[k].local, out.home.begin() + at.strip.first_vertex);
   }
   return out;
@@ -128,6 +146,12 @@ void cut_cluster(const World& before, const World& world, std::size_t strip, con
     for (int v : cluster.released)
       if (const int now = cut.cut.new_vertex[static_cast<std::size_t>(v)]; now >= 0 && distance[static_cast<std::size_t>(now)] > 0)
         released.insert(now);
+    if (cluster.rest) {
+      Rest rest = *cluster.rest;
+      for (int& v : rest.vertices) v = cut.cut.new_vertex[static_cast<std::size_t>(v)];
+      if (std::erase_if(rest.vertices, [](int v) { return v < 0; }) > 0) rest.reach = 0;
+      cluster.rest = std::make_shared<const Rest>(std::move(rest));
+    }
     cluster.local = std::make_shared<const std::vector<Vec3>>(interpolated(cut.old_mesh, cut.cut, *cluster.local));
     cluster.distance = std::make_shared<const std::vector<int>>(std::move(distance));
     cluster.released = std::move(released);
@@ -148,6 +172,105 @@ void form_cluster(const World& world, State& state) {
   take_motion(world, at, is, state);
   if (state.clusters.size() == world.graphs.size())
     for (std::size_t k = 0; k < state.clusters.size(); ++k) put_to_sleep(world, place_of(world, k), state);
+}
+
+Seat::Element seat_of(const World& world, const State& state, std::size_t k, const Rest& rest) {
+  const ClusterPlace at = place_of(world, k);
+  const int hub = at.roll.winding->hub;
+  return {.hub = hub,
+          .cluster = static_cast<int>(at.body),
+          .hub_block = world.assembly.bodies[static_cast<std::size_t>(hub)].block,
+          .cluster_block = at.part.block,
+          .arm = rest.at.foot - state.clusters[k].centre,
+          .turn = rest.at.turn,
+          .form = rest.form};
+}
+
+std::vector<Seat::Element> seats(const World& world, const State& state) {
+  std::vector<Seat::Element> out;
+  for (std::size_t k = 0; k < state.clusters.size(); ++k)
+    if (const auto& rest = state.clusters[k].rest) out.push_back(seat_of(world, state, k, *rest));
+  return out;
+}
+
+Real off_its_rest(const World& world, const State& state, std::size_t k) {
+  const ClusterPlace at = place_of(world, k);
+  const Cluster& cluster = state.clusters[k];
+  const std::vector<bool> is = members(world.assembly, at.strip, cluster, collar(world));
+  const auto has_left = [&](int v) { return !is[static_cast<std::size_t>(v)]; };
+  if (cluster.rest->reach == 0 || std::ranges::any_of(cluster.rest->vertices, has_left)) return std::numeric_limits<Real>::infinity();
+  const Pose& hub = state.bodies[static_cast<std::size_t>(at.roll.winding->hub)].pose;
+  return displaced(cluster.rest->at, cluster.rest->radius, hub, state.bodies[at.body].pose, cluster.centre) / cluster.rest->reach;
+}
+
+bool stays_on_hub(const World& world, const State& before, const State& after, std::size_t k, Real far) {
+  const ClusterPlace at = place_of(world, k);
+  const auto hub = static_cast<std::size_t>(at.roll.winding->hub);
+  const OnHub stood = on_hub(before.bodies[hub].pose, before.bodies[at.body].pose, before.clusters[k].centre);
+  return displaced(stood, hub_radius(world, hub), after.bodies[hub].pose, after.bodies[at.body].pose, after.clusters[k].centre) <= far;
+}
+
+std::optional<Rest> place_of_rest(const World& world, const State& state, std::size_t k, const std::vector<ContactPair>& pairs) {
+  const ClusterPlace at = place_of(world, k);
+  const auto hub = static_cast<std::size_t>(at.roll.winding->hub);
+  const Carriage carriage = carry(world, state);
+  if (world.assembly.bodies[hub].block < 0 || carriage.mass[static_cast<std::size_t>(at.part.centre)] == 0) return {};
+  EffectMemory awake = state.memory, joins;
+  sort_pairs(world.assembly, carriage.owner, {static_cast<int>(at.body), static_cast<int>(hub)}, samples(world), awake, joins);
+  std::vector<int> touch = vertices_of(world.assembly, samples(world), joins);
+  if (touch.empty()) return {};  // friction alone holds it, and gives way
+  Rest rest{.at = on_hub(state.bodies[hub].pose, state.bodies[at.body].pose, state.clusters[k].centre),
+            .form = {},
+            .reach = world.setup.scene.dhat(),
+            .radius = hub_radius(world, hub),
+            .vertices = {}};
+  const auto is_of_roll = [&](int v) {
+    const int body = carriage.owner[static_cast<std::size_t>(v)].body;
+    return body == static_cast<int>(at.body) || body == static_cast<int>(hub);
+  };
+  for (const ContactPair& pair : pairs) {
+    if (!std::ranges::all_of(pair.v, is_of_roll)) continue;
+    Vec3 x[4];
+    for (int i = 0; i < 4; ++i) x[i] = vertex_position(world, state, static_cast<std::size_t>(pair.v[i]));
+    rest.reach = std::min(rest.reach, combine(closest(pair.kind, x).weight, x).norm() - pair.xi);
+    touch.insert(touch.end(), std::begin(pair.v), std::end(pair.v));
+  }
+  rest.reach *= world.setup.scene.cluster.seat;
+  for (int v : touch)
+    if (v < world.assembly.strip_vertices) rest.vertices.push_back(v - at.strip.first_vertex);
+  std::ranges::sort(rest.vertices);
+  rest.vertices.erase(std::ranges::unique(rest.vertices).begin(), rest.vertices.end());
+  return rest;
+}
+
+void put_to_rest(const World& world, std::size_t k, Rest rest, State& state) {
+  state.clusters[k].rest = std::make_shared<const Rest>(std::move(rest));
+  put_to_sleep(world, place_of(world, k), state);
+}
+
+RestingPairs resting_pairs(const World& world, const State& state, std::size_t k) {
+  const ClusterPlace at = place_of(world, k);
+  const Cluster& cluster = state.clusters[k];
+  const Carriage carriage = carry(world, state);
+  RestingPairs out{.pairs = {}, .x = vertex_positions(world, state)};
+  EffectMemory asleep = *cluster.asleep;
+  sort_pairs(world.assembly, carriage.owner, {static_cast<int>(at.body)}, samples(world), out.pairs, asleep);
+  const Pose stood = stands(cluster.rest->at, state.bodies[static_cast<std::size_t>(at.roll.winding->hub)].pose, cluster.centre);
+  for (int v = at.strip.first_vertex; v < at.strip.first_vertex + at.strip.vertices; ++v)
+    if (const auto i = static_cast<std::size_t>(v); carriage.owner[i].body == static_cast<int>(at.body))
+      out.x[i] = apply(stood, carriage.local[i]);
+  return out;
+}
+
+void wake(const World& world, std::size_t k, EffectMemory renewed, State& state) {
+  const ClusterPlace at = place_of(world, k);
+  Cluster& cluster = state.clusters[k];
+  const Carriage carriage = carry(world, state);
+  EffectMemory asleep = *cluster.asleep, before;
+  sort_pairs(world.assembly, carriage.owner, {static_cast<int>(at.body)}, samples(world), before, asleep);
+  sort_pairs(world.assembly, carriage.owner, {}, samples(world), state.memory, renewed);
+  cluster.asleep = std::make_shared<const EffectMemory>(std::move(asleep));
+  cluster.rest = nullptr;
 }
 
 std::vector<TapePart> tape_parts(const World& world, const State& state) {

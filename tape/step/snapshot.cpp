@@ -54,12 +54,20 @@ void visit_state(State& s, const Visit& visit) {
     released.resize(visit.count(released.size()));
     for (int& v : released) visit(v);
     visit(c.centre), visit(c.mass.mass), visit(c.mass.second);
+    std::shared_ptr<const Rest> rest;
+    if (visit.count(c.rest ? 1 : 0) != 0) {
+      Rest copy = c.rest ? *c.rest : Rest{};
+      copy.vertices.resize(visit.count(copy.vertices.size()));
+      copy.visit(visit);
+      rest = std::make_shared<const Rest>(std::move(copy));
+    }
     visit_memory(asleep);
     c = {std::make_shared<const std::vector<Vec3>>(local),
          std::make_shared<const std::vector<int>>(distance),
          {released.begin(), released.end()},
          c.centre,
          c.mass,
+         rest,
          std::make_shared<const EffectMemory>(asleep)};
   }
 }
@@ -167,7 +175,13 @@ void check_memory(const World& world, const MemoryOf<T>& memory) {
 void check_state(const World& world, const State& state) {
   const auto check = [&](const auto&... memory) { (check_memory(world, memory), ...); };
   std::apply(check, state.memory);
-  for (const Cluster& c : state.clusters) std::apply(check, *c.asleep);
+  for (const Cluster& c : state.clusters) {
+    std::apply(check, *c.asleep);
+    if (!c.rest) continue;
+    if (!world.is_on(Seat::name)) throw InputError("a cluster rests on its hub, and 'seat' is off");
+    if (std::ranges::any_of(c.rest->vertices, [&](int v) { return v >= std::ssize(*c.local); }))
+      throw InputError("a cluster rests by vertices that there are not");
+  }
   check_start(vertex_positions(world, state), world.surface, world.setup.scene.dhat(), pairs_out_of_contact(state.memory));
 }
 

@@ -128,13 +128,19 @@ class SideStepper final : public Stepper {
     {
       const Stopwatch watch(report.wall_ms);
       std::optional<State> next = advance(state, dt, world_.setup.newton.retries, report);
+      if (is_to_wake(state, next)) {
+        report.woken = wake_all(state);
+        report.failure.clear();
+        take(exchange);
+        next = advance(state, dt, world_.setup.newton.retries, report);
+      }
       report.ok = next.has_value();
       report.articulations = progress_.done;
       if (report.ok) {
         ++next->step;
         next->time = next->step * dt;
         finish_step(world_, carriage_, state, *next, dt, report);
-        report.woken = move_fronts(state, *next);
+        report.woken += move_fronts(state, *next) + settle_clusters(state, *next);
         state = std::move(*next);
       }
     }
@@ -187,20 +193,22 @@ class SideStepper final : public Stepper {
     linear_.set_layout(articulations_.any() ? articulations_.set_layout(layout, carriage_.blocks) : std::move(layout));
     if (search_) search_->set_carriage(surface_carriage(world_, state, carriage_));
     for (Buffer<Vec3>* blocks : {&direction_, &right_, &points_}) blocks->resize(carriage_.blocks);
+    objective_->set_seats(seats(world_, state));
     objective_->set_carriage(carriage_.blocks, world_.assembly.strip_vertices, view(now_));
     std::vector<const EffectMemory*> asleep;
     for (const Cluster& cluster : state.clusters) asleep.push_back(cluster.asleep.get());
     objective_->set_asleep(asleep);
   }
-  /// Which members a state's clusters have.
-  using Fronts = std::vector<std::shared_ptr<const std::vector<int>>>;
+  /// Which members a state's clusters have, and where they rest.
+  using Fronts = std::vector<std::pair<std::shared_ptr<const std::vector<int>>, std::shared_ptr<const Rest>>>;
   static Fronts fronts(const State& state) {
     Fronts out;
-    for (const Cluster& c : state.clusters) out.push_back(c.distance);
+    for (const Cluster& c : state.clusters) out.emplace_back(c.distance, c.rest);
     return out;
   }
   static bool same(const Fronts& a, const Fronts& b) {
-    return std::ranges::equal(a, b, [](const auto& p, const auto& q) { return p == q || *p == *q; });
+    return std::ranges::equal(
+        a, b, [](const auto& p, const auto& q) { return p.second == q.second && (p.first == q.first || *p.first == *q.first); });
   }
 
   /// Takes up what is exchanged in a step.
@@ -334,16 +342,80 @@ class SideStepper final : public Stepper {
 
   /// Lets clusters lose members at the end of a step. @return [J] stored in what wakes
   Real move_fronts(const State& before, State& after) {
-    const Real searched = search_ms_;
     const Stopwatch watch(front_ms_);
-    if (!advance_fronts(world_, carriage_, before, after)) return 0;
-    const Real known = stored_energy() + std::exchange(regained_, 0);
-    begin(after, dt_);
-    prescribe(Drive::at(world_, after, after.time, 0));
-    take_up(after);
-    recall(after.memory);
+    return advance_fronts(world_, carriage_, before, after) ? take_up_change(after) : 0;
+  }
+  /// Wakes clusters that are off their rest, and lets those rest on their hubs that hardly move there, at once where they are now. @return
+  /// [J] that this adds to what is stored
+  Real settle_clusters(const State& before, State& after) {
+    const Stopwatch watch(front_ms_);
+    const auto change = [&](const auto& changes) {
+      bool changed = false;
+      for (std::size_t k = 0; k < after.clusters.size(); ++k) changed |= changes(k);
+      return changed ? take_up_change(after) : 0;
+    };
+    const Real woken = change([&](std::size_t k) {
+      if (!after.clusters[k].rest || off_its_rest(world_, after, k) <= 1) return false;
+      wake(world_, k, renewed(resting_pairs(world_, after, k)), after);
+      return true;
+    });
+    return woken + change([&](std::size_t k) {
+             std::optional<Rest> rest = after.clusters[k].rest ? std::nullopt : find_rest(before, after, k);
+             if (rest) put_to_rest(world_, k, std::move(*rest), after);
+             return rest.has_value();
+           });
+  }
+  /// Wakes the clusters that rest at the start of a step. @return as settle_clusters
+  Real wake_all(State& state) {
+    const Stopwatch watch(front_ms_);
+    begin(state, dt_);
+    recall(state.memory);
+    for (std::size_t k = 0; k < state.clusters.size(); ++k)
+      if (state.clusters[k].rest) wake(world_, k, renewed(resting_pairs(world_, state, k)), state);
+    return take_up_change(state);
+  }
+  /// After clusters have changed in a state that is at now_. @return [J] by which that changes what is stored
+  Real take_up_change(const State& state) {
+    const Real searched = search_ms_, known = stored_energy() + std::exchange(regained_, 0);
+    begin(state, dt_);
+    prescribe(Drive::at(world_, state, state.time, 0));
+    take_up(state);
+    recall(state.memory);
     front_ms_ -= search_ms_ - searched;
     return stored_energy() - known;
+  }
+  /// Where cluster k rests from now on, if it does.
+  std::optional<Rest> find_rest(const State& before, const State& after, std::size_t k) {
+    constexpr Real kSlack = 0.5;  // of what is remembered, that its reach may use up
+    const Real most = world_.setup.scene.cluster.seat * world_.setup.scene.dhat();
+    if (!world_.is_on(Seat::name) || !stays_on_hub(world_, before, after, k, most)) return {};
+    std::vector<ContactPair> pairs = pairs_on_host(search_->candidates());
+    const std::vector<ContactPair> bonded = pairs_on_host(search_->bonded());
+    pairs.insert(pairs.end(), bonded.begin(), bonded.end());
+    std::optional<Rest> rest = place_of_rest(world_, after, k, pairs);
+    if (!rest) return {};
+    const Seat::Element seat = seat_of(world_, after, k, *rest);
+    const StateView s = view(now_);
+    rest->reach = std::min(rest->reach, kSlack * objective_->slack_between(s, seat.hub, seat.cluster));
+    if (!(rest->reach > 0) || !stays_on_hub(world_, before, after, k, rest->reach)) return {};
+    const Pose& hub = after.bodies[static_cast<std::size_t>(seat.hub)].pose;
+    rest->form = objective_->between(s, seat.hub, seat.cluster, hub.position).seen_from(hub.rotation);
+    return rest;
+  }
+  /// Whether a step must be taken with all clusters awake: they are farther off their rest than its form holds, or it failed.
+  bool is_to_wake(const State& start, const std::optional<State>& end) const {
+    constexpr Real kFar = 2;  // reaches; not yet through a gap
+    for (std::size_t k = 0; k < start.clusters.size(); ++k)
+      if (start.clusters[k].rest && (!end || !(off_its_rest(world_, *end, k) <= kFar))) return true;
+    return false;
+  }
+  EffectMemory renewed(const RestingPairs& resting) {
+    const Buffer<Vec3> x(resting.x);
+    StateView to = view(now_);
+    to.dt = 0, to.x_start = x.span();
+    StateView from = to;
+    from.x = x.span();
+    return objective_->renewed(resting.pairs, from, to, search_->surface());
   }
   Real stored_energy() {
     Real sum = 0;

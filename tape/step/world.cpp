@@ -19,7 +19,7 @@ namespace {
 /// Effects that find their pairs through contact are off with it, unless the scene forces them: that is refused.
 template <class T>
 void follow_contact(const std::vector<PlanLine>& plan, const Setup& setup, PlanLine& line) {
-  if (!(Remembers<T> || std::is_same_v<T, Friction>) || !line.on) return;
+  if (!(Remembers<T> || std::is_same_v<T, Friction> || std::is_same_v<T, Seat>) || !line.on) return;
   for (const PlanLine& other : plan) {
     if (other.name != Barrier::name || other.on) continue;
     if (setup.forced.contains(line.name)) throw InputError("effects." + line.name + " = on: it works on contact, and barrier is off");
@@ -147,6 +147,10 @@ std::string State::hash() const {
     hash.add(c.local->data(), c.local->size() * sizeof(Vec3));
     hash.add(c.distance->data(), c.distance->size() * sizeof(int));
     for (int vertex : c.released) hash.add(&vertex, sizeof vertex);
+    if (c.rest) {
+      Rest rest = *c.rest;
+      rest.visit([&](auto& value) { hash.add(&value, sizeof value); });
+    }
     add_memory(*c.asleep);
   }
   return hash.text();

@@ -19,6 +19,7 @@ EffectWorld::EffectWorld(unsigned seed) : generator_(seed) {
   add_grips();
   add_axles();
   disturb();
+  add_seat();
 }
 
 std::vector<int> EffectWorld::add_vertices(const std::vector<Vec3>& positions) {
@@ -187,6 +188,26 @@ void EffectWorld::disturb() {
     body_target.push_back({rotation_exp(random_vector(3)), random_vector(0.01)});
     body.push_back({rotation_exp(random_vector(0.8)) * body_target[b].rotation, body_target[b].position + random_vector(1e-3)});
   }
+}
+
+/// Of the drum on the arm, at about their places.
+void EffectWorld::add_seat() {
+  Eigen::Matrix<Real, 6, 6> any;
+  for (int k = 0; k < 36; ++k) any.data()[k] = random(-1, 1);
+  Seat::Element seat{.hub = 1,
+                     .cluster = 0,
+                     .hub_block = assembly.bodies[1].block,
+                     .cluster_block = assembly.bodies[0].block,
+                     .arm = random_vector(0.02),
+                     .turn = rotation_exp(random_vector(0.3)) * body[1].rotation.transpose() * body[0].rotation,
+                     .form = {}};
+  seat.form.energy = 1e-3;
+  seat.form.force << random_vector(3), random_vector(0.1);
+  const Vec3 length(1, 1, 1), angle(0.03, 0.03, 0.03);
+  VecN<6> scale;
+  scale << length, angle;
+  seat.form.stiffness = 1e3 * scale.asDiagonal() * any * any.transpose() * scale.asDiagonal();
+  seats.push_back(seat);
 }
 
 StateView EffectWorld::view() const {

@@ -16,6 +16,7 @@ class EffectWorld {
   Assembly assembly;
   std::vector<ContactPair> pairs;
   std::vector<SamplePair> samples;
+  std::vector<Seat::Element> seats;
   std::vector<Vec3> x, x_start, x_tilde;
   std::vector<Pose> body, body_target;
   std::vector<BodyMass> body_mass;
@@ -50,6 +51,7 @@ class EffectWorld {
   void add_axles();
   void add_pairs();
   void add_samples();
+  void add_seat();
   void disturb();
   std::mt19937_64 generator_;
 };
@@ -74,6 +76,7 @@ struct Built {
       for (const auto& pair : world.pairs_of<T>())
         if (term.begin(pair, start, m)) elements.push_back(term.recall(m, pair, start));
     }
+    if constexpr (std::is_same_v<T, Seat>) elements = world.seats;
     term.elements = {elements.data(), static_cast<int>(elements.size())};
   }
   Built(const Built&) = delete;

@@ -121,6 +121,30 @@ TEST(ReducedRoll, GivesBackItsTapeWithItsMotionUntilNothingIsLeft) {
   EXPECT_TRUE(stepper->step(start).ok);
 }
 
+TEST(ReducedRoll, GivesBackAsManyRowsAsAStepHasTakenOff) {
+  const World world = roll({"roll.turns=8"});
+  State state = State::start(world);
+  const State before = state;
+  const Carriage carriage = carry(world, state);
+  const Moving was(world, state);
+  const auto collar = [&](std::size_t v) { return carriage.owner[v].body < 0 && (*before.clusters[0].distance)[v] > 0; };
+  int taken = 0, one_edge = static_cast<int>(carriage.next[0].size());
+  for (std::size_t v = 0; v < state.x.size(); ++v)
+    if (collar(v)) state.x[v].z() += 1e-3, ++taken;  // beyond the gate
+  ASSERT_GT(taken, 5 * one_edge);
+  ASSERT_TRUE(advance_fronts(world, carriage, before, state));
+  for (std::size_t v = 0; v < state.x.size(); ++v) {
+    const int distance = (*state.clusters[0].distance)[v];
+    if (collar(v)) {
+      EXPECT_EQ(distance, 0) << v;
+    } else if (carriage.owner[v].body >= 0) {
+      EXPECT_GT(distance, 0) << v << ": it was rigid in the step";
+    }
+  }
+  const Moving is(world, state);
+  EXPECT_EQ((is.p - was.p).norm() + (is.L - was.L).norm(), 0) << "of a roll that rests";
+}
+
 TEST(ReducedRoll, FormsWithTheMomentumOfItsTape) {
   cosim::RunInput input = cosim::read_run(cosim::SceneFile::parse(kRoll, TAPE_SOURCE_DIR "/data/scenes/roll_test.yaml", {}));
   cosim::place_roll(cosim::settle_roll(cosim::roll_alone(input.setup, 0), {}), 0, input.setup);
@@ -139,8 +163,9 @@ TEST(ReducedRoll, FormsWithTheMomentumOfItsTape) {
 
 namespace {
 /// Angle [deg] by which the hub turns about y in some time, in a roll that spins as a whole and drags its free end along.
-Real hub_angle(const char* model, Real dt, Real time) {
-  const World world = roll({std::string("model=") + model, "time.dt=" + to_text(dt), "solver.velocity_tol=1e-5", "gravity=[0,0,-9.81]"});
+Real hub_angle(const char* model, Real dt, Real time, const std::string& seat = "0.2") {
+  const World world = roll(
+      {std::string("model=") + model, "time.dt=" + to_text(dt), "solver.velocity_tol=1e-5", "gravity=[0,0,-9.81]", "cluster.seat=" + seat});
   const std::unique_ptr<Stepper> stepper = make_stepper(Backend::cpu, world);
   State state = State::start(world);
   const auto steps = static_cast<int>(std::lround(time / dt));
@@ -197,3 +222,101 @@ TEST(ReducedRoll, GoesOnBitForBitFromASnapshotBeforeAndAfterARelease) {
     EXPECT_EQ(again.hash(), fresh.hash()) << model;
   }
 }
+
+namespace {
+/// A roll whose tape and hub adhere by a law without a memory of slip: where they stand says what they bear.
+World roll_per_area(const std::string& seat) {
+  return roll({"cluster.seat=" + seat, "interfaces.0.law=per_area", "interfaces.1.law=per_area", "interfaces.0.rest=0.8",
+               "interfaces.1.rest=0.8", "interfaces.0.reach=0.8", "interfaces.1.reach=0.8"});
+}
+/// The state with the cluster moved against its hub.
+State displaced(const World& world, State state, const Vec3& by, const Vec3& turn) {
+  BodyState& body = state.bodies[static_cast<std::size_t>(world.first_cluster())];
+  const Vec3 hub = state.bodies[0].pose.position;
+  const Mat3 R = rotation_exp(turn);
+  body.pose = {R * body.pose.rotation, hub + R * (body.pose.position - hub) + by};
+  const Carriage c = carry(world, state);
+  for (std::size_t v = 0; v < state.x.size(); ++v)
+    if (c.owner[v].body >= 0) state.x[v] = apply(body.pose, c.local[v]);
+  return state;
+}
+}  // namespace
+
+// The form of a resting cluster beside the pairs that it stands for, which are awake in another world.
+TEST(RestOnHub, StoresWhatThePairsStoreThatSleep) {
+  const World resting = roll_per_area("0.1"), awake = roll_per_area("0");
+  const std::unique_ptr<Stepper> at_rest = make_stepper(Backend::cpu, resting), other = make_stepper(Backend::cpu, awake);
+  State a = State::start(resting), b = State::start(awake);
+  const StepReport rests = at_rest->step(a);
+  ASSERT_TRUE(rests.ok && other->step(b).ok && a.clusters[0].rest && !b.clusters[0].rest);
+  EXPECT_LT(std::fabs(rests.woken), 1e-12 * at_rest->renew(a));
+  const auto stored = [](Stepper& stepper, const World& world, const State& state, const Vec3& by, const Vec3& turn) {
+    return stepper.renew(displaced(world, state, by, turn));
+  };
+  const Real d = 0.3 * a.clusters[0].rest->reach, angle = d / a.clusters[0].rest->radius;
+  for (const auto& [by, turn] : {std::pair<Vec3, Vec3>{{d, 0, 0}, {0, 0, 0}},
+                                 {{0, d, 0}, {0, 0, 0}},
+                                 {{0, 0, d}, {0, 0, 0}},
+                                 {{0, 0, 0}, {angle, 0, 0}},
+                                 {{0, 0, 0}, {0, angle, 0}},
+                                 {{d / 2, -d / 3, d / 4}, {-angle / 2, angle / 3, angle / 4}}}) {
+    const auto change = [&](Stepper& stepper, const World& world, const State& state) {
+      const Real there = stored(stepper, world, state, by, turn), back = stored(stepper, world, state, -by, -turn);
+      const Real here = stored(stepper, world, state, Vec3::Zero(), Vec3::Zero());
+      return std::pair{there - back, there + back - 2 * here};
+    };
+    const auto [slope_a, curvature_a] = change(*at_rest, resting, a);
+    const auto [slope_b, curvature_b] = change(*other, awake, b);
+    EXPECT_GT(curvature_b, 0);
+    EXPECT_NEAR(curvature_a, curvature_b, 0.02 * curvature_b) << by.transpose() << ", " << turn.transpose();
+    EXPECT_NEAR(slope_a, slope_b, 0.02 * curvature_b) << by.transpose() << ", " << turn.transpose();
+  }
+}
+
+namespace {
+/// The hub is pushed to and fro against its tape, by velocities as of a knock, and then left alone.
+struct Knocked {
+  Real creep = 0;  ///< [m] by which the cluster stands elsewhere on its hub afterwards
+  int rested = 0;  ///< steps that started with the cluster at rest
+  int woken = 0;   ///< steps at whose end it had come off its rest, or stood elsewhere
+  Vec3 centre;     ///< [m] of the hub
+};
+Knocked knock(const std::string& seat, Real speed) {
+  const World world = roll({"cluster.seat=" + seat, "interfaces.1.cn=0.25", "interfaces.1.ct=0.25"});
+  const std::unique_ptr<Stepper> stepper = make_stepper(Backend::cpu, world);
+  State state = State::start(world);
+  const auto cluster = static_cast<std::size_t>(world.first_cluster());
+  const auto place = [&] { return on_hub(state.bodies[0].pose, state.bodies[cluster].pose, state.clusters[0].centre); };
+  Knocked out;
+  const auto step = [&] {
+    const std::shared_ptr<const Rest> rest = state.clusters[0].rest;
+    out.rested += rest ? 1 : 0;
+    EXPECT_TRUE(stepper->step(state).ok);
+    out.woken += rest && state.clusters[0].rest != rest ? 1 : 0;
+  };
+  for (int k = 0; k < 10; ++k) step();
+  const OnHub before = place();
+  for (int k = 0; k < 12; ++k) {
+    const Vec3 direction = k % 3 == 0 ? Vec3(1, 0, 0) : k % 3 == 1 ? Vec3(0, 1, 0.5) : Vec3(-1, -0.5, 0.7);
+    state.bodies[0].velocity += speed * direction;
+    state.bodies[0].angular_momentum += speed * Vec3(0, 1e-5, 0);
+    for (int n = 0; n < 4; ++n) step();
+  }
+  for (int k = 0; k < 40; ++k) step();
+  out.creep = displaced(before, 0.02, state.bodies[0].pose, state.bodies[cluster].pose, state.clusters[0].centre);
+  out.centre = state.bodies[0].pose.position;
+  return out;
+}
+}  // namespace
+
+TEST(RestOnHub, WakesWhenItIsKnockedAndForgetsNothing) {
+  const Knocked soft = knock("0.2", 5), soft_awake = knock("0", 5), hard = knock("0.2", 20), hard_awake = knock("0", 20);
+  EXPECT_EQ(soft.rested, 97) << "all steps but the first";
+  EXPECT_EQ(soft.woken, 0);
+  EXPECT_LT((soft.centre - soft_awake.centre).norm(), 1e-7);
+  EXPECT_GT(hard.rested, 50);
+  EXPECT_GT(hard.woken, 10);
+  EXPECT_EQ(hard_awake.rested, 0);
+  for (const Knocked& each : {soft, soft_awake, hard, hard_awake}) EXPECT_LT(each.creep, 1e-6) << "dhat/200, however often it woke";
+}
+TEST(RestOnHub, TurnsTheHubAsPairsThatAreAwakeDo) { EXPECT_NEAR(hub_angle("coh-r", 1e-2, 0.3), hub_angle("coh-r", 1e-2, 0.3, "0"), 1e-3); }

@@ -122,7 +122,7 @@ TEST(Cluster, PairsBetweenMembersSleep) {
     m.vertex = vertex, m.triangle = triangle, m.beta = 0.1 * vertex, m.slip.setZero();
     pairs.push_back(m);
   }
-  sort_pairs(r.assembly, r.carriage().owner, 0, 1, awake, asleep);
+  sort_pairs(r.assembly, r.carriage().owner, {0}, 1, awake, asleep);
   const std::vector<Cohesion::Memory>& down = std::get<MemoryOf<Cohesion>>(asleep).pairs;
   ASSERT_EQ(down.size(), 2u);
   EXPECT_EQ(down[0].vertex, 0);
@@ -130,7 +130,7 @@ TEST(Cluster, PairsBetweenMembersSleep) {
   EXPECT_EQ(down[1].beta, 0.1 * (kColumns * 6 - 1));
   EXPECT_EQ(pairs.size(), 3u);
   r.cluster.distance = std::make_shared<const std::vector<int>>(static_cast<std::size_t>(r.part().vertices), 0);  // all of it is free
-  sort_pairs(r.assembly, r.carriage().owner, 0, 1, awake, asleep);
+  sort_pairs(r.assembly, r.carriage().owner, {0}, 1, awake, asleep);
   EXPECT_TRUE(down.empty());
   EXPECT_EQ(pairs.size(), 5u);
   EXPECT_TRUE(std::ranges::is_sorted(pairs, {}, [](const auto& p) { return p.key(); }));
