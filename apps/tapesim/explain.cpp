@@ -50,7 +50,7 @@ std::vector<Line> stages(const World& world, const cosim::RobotScene& robots) {
       {"history", !remembering.empty(), remembering.empty() ? "no effect that is on remembers" : remembering},
       {"reduction", !world.graphs.empty(), world.graphs.empty() ? "no model that is reduced" : "model"},
       {"cutting", !world.setup.scene.blades.empty(), world.setup.scene.blades.empty() ? "no blades" : "cutting"},
-      {"sleeping", false, "bodies at rest do not sleep in this build"},
+      {"sleeping", world.is_on(Seat::name), world.is_on(Seat::name) ? "seat" : "no cluster that may rest on its hub"},
       {"cosim", !robots.robots.empty(), robots.robots.empty() ? "no robots" : "robots"},
   };
 }
