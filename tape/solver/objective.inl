@@ -237,7 +237,11 @@ struct FormBetween {
   StateView s;
   Joins joins;
   Vec3 about;
-  TAPE_HD PlaceForm operator()(int i) const {
+  Span<PlaceForm> forms;
+  TAPE_HD void operator()(int i) const { forms[i] = form_of(i); }
+
+ private:
+  TAPE_HD PlaceForm form_of(int i) const {
     constexpr int K = stencil_size<T>;
     PlaceForm form;
     const Stencil<K> stencil = term.stencil(i);
@@ -327,14 +331,16 @@ inline void Objective::set_seats(const std::vector<Seat::Element>& seats) {
 }
 
 inline PlaceForm Objective::between(const StateView& s, int standing, int moving, const Vec3& about) {
-  PlaceForm form;
+  PlaceForm sum;
+  Buffer<PlaceForm> forms;  // summed on the host: they are too large for a block's memory on a device
   for_each([&]<class T>(std::string_view, Term<T>& term) {
     if constexpr (is_contact<T> && !requires { T::incremental; }) {
-      const objective::FormBetween<T> kernel{term.view, s, {standing, moving}, about};
-      form = form + reduce(term.view.elements.size, PlaceForm{}, kernel, Plus{});
+      forms.resize(term.view.elements.size);
+      parallel_for(forms.size(), objective::FormBetween<T>{term.view, s, {standing, moving}, about, forms.span()});
+      for (const PlaceForm& form : forms.download()) sum = sum + form;
     }
   });
-  return form;
+  return sum;
 }
 
 inline Real Objective::slack_between(const StateView& s, int standing, int moving) {
