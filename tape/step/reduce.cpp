@@ -193,11 +193,12 @@ std::vector<Seat::Element> seats(const World& world, const State& state) {
   return out;
 }
 
-Real off_its_rest(const World& world, const State& state, std::size_t k) {
+Real off_its_rest(const World& world, const Carriage& carriage, const State& state, std::size_t k) {
   const ClusterPlace at = place_of(world, k);
   const Cluster& cluster = state.clusters[k];
-  const std::vector<bool> is = members(world.assembly, at.strip, cluster, collar(world));
-  const auto has_left = [&](int v) { return !is[static_cast<std::size_t>(v)]; };
+  const auto has_left = [&](int v) {
+    return carriage.owner[static_cast<std::size_t>(at.strip.first_vertex + v)].body != static_cast<int>(at.body);
+  };
   if (cluster.rest->reach == 0 || std::ranges::any_of(cluster.rest->vertices, has_left)) return std::numeric_limits<Real>::infinity();
   const Pose& hub = state.bodies[static_cast<std::size_t>(at.roll.winding->hub)].pose;
   return displaced(cluster.rest->at, cluster.rest->radius, hub, state.bodies[at.body].pose, cluster.centre) / cluster.rest->reach;
@@ -248,13 +249,11 @@ void put_to_rest(const World& world, std::size_t k, Rest rest, State& state) {
   put_to_sleep(world, place_of(world, k), state);
 }
 
-RestingPairs resting_pairs(const World& world, const State& state, std::size_t k) {
+RestingPairs resting_pairs(const World& world, const Carriage& carriage, const State& state, std::size_t k) {
   const ClusterPlace at = place_of(world, k);
   const Cluster& cluster = state.clusters[k];
-  const Carriage carriage = carry(world, state);
-  RestingPairs out{.pairs = {}, .x = vertex_positions(world, state)};
-  EffectMemory asleep = *cluster.asleep;
-  sort_pairs(world.assembly, carriage.owner, {static_cast<int>(at.body)}, samples(world), out.pairs, asleep);
+  RestingPairs out{.with_hub = {}, .of_members = *cluster.asleep, .x = vertex_positions(world, state)};
+  sort_pairs(world.assembly, carriage.owner, {static_cast<int>(at.body)}, samples(world), out.with_hub, out.of_members);
   const Pose stood = stands(cluster.rest->at, state.bodies[static_cast<std::size_t>(at.roll.winding->hub)].pose, cluster.centre);
   for (int v = at.strip.first_vertex; v < at.strip.first_vertex + at.strip.vertices; ++v)
     if (const auto i = static_cast<std::size_t>(v); carriage.owner[i].body == static_cast<int>(at.body))
@@ -262,15 +261,10 @@ RestingPairs resting_pairs(const World& world, const State& state, std::size_t k
   return out;
 }
 
-void wake(const World& world, std::size_t k, EffectMemory renewed, State& state) {
-  const ClusterPlace at = place_of(world, k);
-  Cluster& cluster = state.clusters[k];
-  const Carriage carriage = carry(world, state);
-  EffectMemory asleep = *cluster.asleep, before;
-  sort_pairs(world.assembly, carriage.owner, {static_cast<int>(at.body)}, samples(world), before, asleep);
-  sort_pairs(world.assembly, carriage.owner, {}, samples(world), state.memory, renewed);
-  cluster.asleep = std::make_shared<const EffectMemory>(std::move(asleep));
-  cluster.rest = nullptr;
+void wake(const World& world, const Carriage& carriage, std::size_t k, EffectMemory of_members, EffectMemory with_hub, State& state) {
+  state.clusters[k].rest = nullptr;
+  state.clusters[k].asleep = std::make_shared<const EffectMemory>(std::move(of_members));
+  sort_pairs(world.assembly, carriage.owner, {}, samples(world), state.memory, with_hub);
 }
 
 std::vector<TapePart> tape_parts(const World& world, const State& state) {

@@ -29,19 +29,20 @@ bool advance_fronts(const World& world, const Carriage& carriage, const State& b
 Seat::Element seat_of(const World& world, const State& state, std::size_t k, const Rest& rest);
 std::vector<Seat::Element> seats(const World& world, const State& state);
 /// [1] how far cluster k is from where it rests on its hub, over its reach; infinite if a member that touched the hub has left.
-Real off_its_rest(const World& world, const State& state, std::size_t k);
+/// @param carriage  of the state
+Real off_its_rest(const World& world, const Carriage& carriage, const State& state, std::size_t k);
 /// Whether cluster k has moved no farther than that [m] against its hub.
 bool stays_on_hub(const World& world, const State& before, const State& after, std::size_t k, Real far);
 /// Where cluster k might rest, with its reach by the gaps, but without its form; nothing where the hub is fixed or nothing adheres to it.
 /// @param pairs  all that are near, in contact or not
 std::optional<Rest> place_of_rest(const World& world, const State& state, std::size_t k, const std::vector<ContactPair>& pairs);
 void put_to_rest(const World& world, std::size_t k, Rest rest, State& state);
-/// What cluster k at rest remembers of its hub.
+/// What cluster k at rest remembers asleep.
 struct RestingPairs {
-  EffectMemory pairs;
+  EffectMemory with_hub, of_members;
   std::vector<Vec3> x;  ///< [nv] m, positions of all vertices if the cluster stood where it came to rest
 };
-RestingPairs resting_pairs(const World& world, const State& state, std::size_t k);
-/// Ends the rest of cluster k. @param renewed  its resting pairs, as they are now
-void wake(const World& world, std::size_t k, EffectMemory renewed, State& state);
+RestingPairs resting_pairs(const World& world, const Carriage& carriage, const State& state, std::size_t k);
+/// Ends the rest of cluster k. @param of_members, with_hub  its resting pairs, as they are now
+void wake(const World& world, const Carriage& carriage, std::size_t k, EffectMemory of_members, EffectMemory with_hub, State& state);
 }  // namespace tape

@@ -175,14 +175,18 @@ void check_memory(const World& world, const MemoryOf<T>& memory) {
 void check_state(const World& world, const State& state) {
   const auto check = [&](const auto&... memory) { (check_memory(world, memory), ...); };
   std::apply(check, state.memory);
+  std::vector<VertexTriangle> bonded = pairs_out_of_contact(state.memory);
   for (const Cluster& c : state.clusters) {
     std::apply(check, *c.asleep);
+    const std::vector<VertexTriangle> asleep = pairs_out_of_contact(*c.asleep);
+    bonded.insert(bonded.end(), asleep.begin(), asleep.end());
     if (!c.rest) continue;
     if (!world.is_on(Seat::name)) throw InputError("a cluster rests on its hub, and 'seat' is off");
     if (std::ranges::any_of(c.rest->vertices, [&](int v) { return v >= std::ssize(*c.local); }))
       throw InputError("a cluster rests by vertices that there are not");
   }
-  check_start(vertex_positions(world, state), world.surface, world.setup.scene.dhat(), pairs_out_of_contact(state.memory));
+  std::ranges::sort(bonded, {}, &VertexTriangle::key);
+  check_start(vertex_positions(world, state), world.surface, world.setup.scene.dhat(), bonded);
 }
 
 void write_array(hid_t file, const char* name, hid_t type, const void* data, std::size_t n) {

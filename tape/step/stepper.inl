@@ -355,8 +355,8 @@ class SideStepper final : public Stepper {
       return changed ? take_up_change(after) : 0;
     };
     const Real woken = change([&](std::size_t k) {
-      if (!after.clusters[k].rest || off_its_rest(world_, after, k) <= 1) return false;
-      wake(world_, k, renewed(resting_pairs(world_, after, k)), after);
+      if (!after.clusters[k].rest || off_its_rest(world_, carriage_, after, k) <= 1) return false;
+      wake_up(k, after);
       return true;
     });
     return woken + change([&](std::size_t k) {
@@ -371,7 +371,7 @@ class SideStepper final : public Stepper {
     begin(state, dt_);
     recall(state.memory);
     for (std::size_t k = 0; k < state.clusters.size(); ++k)
-      if (state.clusters[k].rest) wake(world_, k, renewed(resting_pairs(world_, state, k)), state);
+      if (state.clusters[k].rest) wake_up(k, state);
     return take_up_change(state);
   }
   /// After clusters have changed in a state that is at now_. @return [J] by which that changes what is stored
@@ -406,16 +406,18 @@ class SideStepper final : public Stepper {
   bool is_to_wake(const State& start, const std::optional<State>& end) const {
     constexpr Real kFar = 2;  // reaches; not yet through a gap
     for (std::size_t k = 0; k < start.clusters.size(); ++k)
-      if (start.clusters[k].rest && (!end || !(off_its_rest(world_, *end, k) <= kFar))) return true;
+      if (start.clusters[k].rest && (!end || !(off_its_rest(world_, carriage_, *end, k) <= kFar))) return true;
     return false;
   }
-  EffectMemory renewed(const RestingPairs& resting) {
+  /// Ends the rest of cluster k in a state that is at now_.
+  void wake_up(std::size_t k, State& state) {
+    RestingPairs resting = resting_pairs(world_, carriage_, state, k);
     const Buffer<Vec3> x(resting.x);
     StateView to = view(now_);
     to.dt = 0, to.x_start = x.span();
     StateView from = to;
     from.x = x.span();
-    return objective_->renewed(resting.pairs, from, to, search_->surface());
+    wake(world_, carriage_, k, std::move(resting.of_members), objective_->renewed(resting.with_hub, from, to, search_->surface()), state);
   }
   Real stored_energy() {
     Real sum = 0;
