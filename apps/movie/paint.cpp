@@ -16,7 +16,7 @@ const Vec3 kTracked(0.80, 0.10, 0.14);
 const struct {
   const char* name;
   Vec3 color;
-} kParts[] = {{"free tape", kTapeFront}, {"collar", {0.16, 0.60, 0.58}}, {"cluster", {0.30, 0.36, 0.50}}};
+} kParts[] = {{"free tape", kTapeFront}, {"collar", {0.16, 0.60, 0.58}}, {"cluster", {0.30, 0.36, 0.50}}, {"asleep", {0.66, 0.60, 0.74}}};
 const Vec3 kBodyColors[] = {{0.45, 0.55, 0.68}, {0.55, 0.62, 0.50}, {0.66, 0.50, 0.48}, {0.58, 0.52, 0.66},
                             {0.62, 0.62, 0.60}, {0.42, 0.60, 0.60}, {0.68, 0.54, 0.62}, {0.50, 0.50, 0.52}};
 

@@ -36,7 +36,8 @@ void visit_columns(const World& world, const std::vector<Phase>& phases, const c
     f(between + "from_m", a.from), f(between + "to_m", a.to);
   }
   if (!world.setup.scene.adhesives.empty()) f("adhesion_work_J", r.adhesion_work);
-  if (!world.graphs.empty()) f("woken_J", r.woken);
+  if (world.clusters() > 0 || world.setup.scene.sleep.after > 0) f("woken_J", r.woken);
+  if (world.setup.scene.sleep.after > 0) f("asleep", r.asleep);
   const auto vector = [&](const std::string& name, const std::string& unit, const Vec3& v) {
     for (int c = 0; c < 3; ++c) f(name + "_" + "xyz"[c] + "_" + unit, v[c]);
   };

@@ -38,6 +38,8 @@ std::vector<Line> stages(const World& world, const cosim::RobotScene& robots) {
   for_each_effect([&]<class T>(std::type_identity<T>) {
     if (Remembers<T> && world.is_on(T::name)) remembering += (remembering.empty() ? "" : ", ") + std::string(T::name);
   });
+  std::string sleeping = world.is_on(Seat::name) ? "seat" : "";
+  if (world.setup.scene.sleep.after > 0) sleeping += (sleeping.empty() ? "" : ", ") + std::string("sleep");
   const bool contact = world.is_on(Barrier::name);
   const std::string why = contact ? "barrier" : "barrier is off";
   return {
@@ -48,9 +50,9 @@ std::vector<Line> stages(const World& world, const cosim::RobotScene& robots) {
       {"linear_solver", true, "solver.linear: " + to_text(world.setup.linear.linear)},
       {"line_search", true, "every step"},
       {"history", !remembering.empty(), remembering.empty() ? "no effect that is on remembers" : remembering},
-      {"reduction", !world.graphs.empty(), world.graphs.empty() ? "no model that is reduced" : "model"},
+      {"reduction", world.clusters() > 0, world.clusters() > 0 ? "model" : "no model that is reduced"},
       {"cutting", !world.setup.scene.blades.empty(), world.setup.scene.blades.empty() ? "no blades" : "cutting"},
-      {"sleeping", world.is_on(Seat::name), world.is_on(Seat::name) ? "seat" : "no cluster that may rest on its hub"},
+      {"sleeping", !sleeping.empty(), sleeping.empty() ? "no cluster that may rest on its hub; sleep.after is 0" : sleeping},
       {"cosim", !robots.robots.empty(), robots.robots.empty() ? "no robots" : "robots"},
   };
 }

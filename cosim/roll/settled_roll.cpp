@@ -106,6 +106,7 @@ Setup roll_alone(const Setup& setup, std::size_t strip) {
   scene.bodies = {hub};
   scene.grips.clear(), scene.axles.clear(), scene.articulations.clear(), scene.blades.clear();
   scene.model.reset();
+  scene.sleep = {};
   scene.gravity.setZero();
   scene.time = {.dt = kDt, .duration = 1};
   alone.newton = {.velocity_tol = kAccuracy * SettleParams{}.speed};

@@ -26,16 +26,19 @@ std::vector<char> adhering(const tape::World& world, const tape::State& state, s
     if (!is(vertices[0], object) || (other && !is(on, *other))) return;
     for (int v : vertices) adheres[static_cast<std::size_t>(v)] = 1;
   };
-  tape::EffectMemory memory = state.memory;
-  for_each_memory(memory, [&](const auto& pairs) {
-    for (const auto& pair : pairs) {
-      if (!(pair.engagement(adhesion_of(world, pair)) > kAdheres)) continue;
-      const tape::SurfaceTriangle& triangle = world.surface.triangles[static_cast<std::size_t>(pair.triangle)];
-      const std::vector<int> own = sticking_vertices(world, pair), face(std::begin(triangle.v), std::end(triangle.v));
-      mark(own, face[0]);
-      mark(face, own[0]);
-    }
-  });
+  const auto mark_pairs = [&](tape::EffectMemory memory) {
+    for_each_memory(memory, [&](const auto& pairs) {
+      for (const auto& pair : pairs) {
+        if (!(pair.engagement(adhesion_of(world, pair)) > kAdheres)) continue;
+        const tape::SurfaceTriangle& triangle = world.surface.triangles[static_cast<std::size_t>(pair.triangle)];
+        const std::vector<int> own = sticking_vertices(world, pair), face(std::begin(triangle.v), std::end(triangle.v));
+        mark(own, face[0]);
+        mark(face, own[0]);
+      }
+    });
+  };
+  mark_pairs(state.memory);
+  if (state.sleepers) mark_pairs(state.sleepers->asleep);
   return adheres;
 }
 

@@ -5,7 +5,7 @@
 
 namespace cosim {
 /// Share [1] of a strip's area at rest that adheres: a vertex stands for a third of the triangles around it, and adheres where one of the
-/// pairs that name it has more than half of its engagement left. What sleeps in a cluster does not count.
+/// pairs that name it has more than half of its engagement left. What a cluster remembers does not count.
 /// @param other  object of World::surface that it must adhere to; none: any
 double attached_share(const tape::World& world, const tape::State& state, std::size_t strip, std::optional<std::size_t> other);
 

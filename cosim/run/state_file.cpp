@@ -15,7 +15,8 @@ constexpr const char* kAbout =
     "rotation "
     "R_WB row by row, then the position. local: vertices of bodies in B. contact_force: N at each vertex. engagement: what adhesion is "
     "left, 0 to 1. "
-    "part: 0 free tape, 1 collar, 2 cluster. robots/NAME/: position, velocity, command, effort of each joint in the order of attribute "
+    "part: 0 free tape, 1 collar, 2 cluster, 3 asleep. robots/NAME/: position, velocity, command, effort of each joint in the order of "
+    "attribute "
     "joints.NAME (rad, m, "
     "N m, N); links: of each link's frame in the world, in the order of attribute links.NAME, the position, then the quaternion w x y z; "
     "attribute frames.NAME: named frames that are fixed in links, one a line: link, pose in it likewise, name; wrench: of the "
@@ -129,7 +130,7 @@ bool consistent(const RecordedMesh& mesh) {
 }
 bool consistent(const RecordedFrame& frame, const RecordedMesh& mesh) {
   const auto finite = [](const auto& value) { return value.allFinite(); };
-  const auto known = [](TapePart part) { return part >= TapePart::free && part <= TapePart::cluster; };
+  const auto known = [](TapePart part) { return part >= TapePart::free && part <= TapePart::asleep; };
   return std::ssize(frame.x) == mesh.strip_vertices && std::ssize(frame.bodies) == body_count(mesh) &&
          frame.contact_force.size() == mesh.body.size() && frame.engagement.size() == frame.x.size() &&
          frame.part.size() == frame.x.size() && frame.grip_force.size() == mesh.grips.size() && frame.phase >= -1 &&

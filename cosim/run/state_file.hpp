@@ -68,10 +68,10 @@ std::vector<Vec3> vertex_positions(const RecordedMesh& mesh, const RecordedFrame
 
 /// Writes state.h5. Arrays: triangles [nt,3], rest [nv,2] m, body [nv], local [nv,3] m, objects [n,3] (first triangle, triangles, 1 for
 /// a strip), film [n,2] (E h/(1 - nu^2) [N/m] and nu of a strip); and per frame: step, time [s], x [strip vertices,3] m, pose [bodies,12]
-/// (rotation row by row, position), contact_force [nv] N, engagement [strip vertices], part [strip vertices] (0 free, 1 collar, 2 cluster),
-/// mesh: after the k-th cut all arrays of vertices and triangles go on in meshK/; of each robot in robots/NAME/: position, velocity,
-/// command, effort [joints], links [links,7] (position, quaternion w x y z), wrench [links,6]; grip_force [grips,3] N; phase: of the
-/// script, which attribute `phases` names. Attribute `about` says all this, with units.
+/// (rotation row by row, position), contact_force [nv] N, engagement [strip vertices], part [strip vertices] (0 free, 1 collar, 2 cluster,
+/// 3 asleep), mesh: after the k-th cut all arrays of vertices and triangles go on in meshK/; of each robot in robots/NAME/: position,
+/// velocity, command, effort [joints], links [links,7] (position, quaternion w x y z), wrench [links,6]; grip_force [grips,3] N; phase: of
+/// the script, which attribute `phases` names. Attribute `about` says all this, with units.
 class StateWriter {
  public:
   StateWriter(const std::filesystem::path& name, const RecordedMesh& mesh);

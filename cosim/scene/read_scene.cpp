@@ -31,6 +31,7 @@ class SceneReader {
     time();
     file_.read("contact", scene_.contact);
     file_.read("cluster", scene_.cluster);
+    file_.read("sleep", scene_.sleep);
     scene_.gravity = file_["gravity"].vector_or(scene_.gravity, kPlace, "m/s^2");
     scene_.seed = file_["seed"].integer_or(scene_.seed, Range::non_negative());
     materials();

@@ -262,12 +262,12 @@ struct BoxObjects {
 struct FindPartners {
   SurfaceView s;
   Span<const int> first;
+  Span<const char> fixed;  ///< [objects]
   Span<const Box> boxes;
   Span<int> partners;  ///< [objects objects] of object o from objects o on
   Span<int> count;     ///< [objects]
-  TAPE_HD bool fixed(int o) const { return s.vertex_carrier[first[o]] == kFixed; }
   TAPE_HD bool may_touch(int o, int p) const {
-    if (o == p || first[p] == first[p + 1] || (fixed(o) && fixed(p))) return false;
+    if (o == p || first[p] == first[p + 1] || (fixed[o] != 0 && fixed[p] != 0)) return false;
     if (s.apart.size > 0 && s.apart[o * s.objects + p] != 0) return false;
     const int frame = s.vertex_frame[first[o]];
     return frame == kWorld || frame != s.vertex_frame[first[p]];

@@ -124,7 +124,8 @@ inline void ContactSearch::find_company() {
   object_boxes_.resize(s.objects), partner_count_.resize(s.objects), partners_.resize(s.objects * s.objects);
   const Span<const int> first = surface_.first_vertex.span();
   parallel_for(s.objects, detail::BoxObjects{s, sight, first, object_boxes_.span()});
-  parallel_for(s.objects, detail::FindPartners{s, first, object_boxes_.span(), partners_.span(), partner_count_.span()});
+  parallel_for(s.objects,
+               detail::FindPartners{s, first, surface_.fixed.span(), object_boxes_.span(), partners_.span(), partner_count_.span()});
   meetings_.resize(partners_.size());
   parallel_for(meetings_.size(), detail::BoxMeetings{s, sight, surface_.first_triangle.span(), partners_.span(), partner_count_.span(),
                                                      object_boxes_.span(), meetings_.span()});

@@ -145,6 +145,10 @@ struct SurfaceBuffers {
         free[object] = 1;
     }
     has_frame.upload(framed), touches_itself.upload(free);
+    std::vector<char> still(mesh.objects.size(), 1);
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+      if (carriers.vertex[v] != kFixed) still[static_cast<std::size_t>(mesh.vertices[v].object)] = 0;
+    fixed.upload(still);
     const auto follows = [&](int v) { return frames.vertex[static_cast<std::size_t>(v)] != kWorld; };
     const auto is_asleep = [&](std::span<const int> v) {
       return sleeps[static_cast<std::size_t>(v[0])] != 0 && carriers.common(v) != kFree;
@@ -194,6 +198,7 @@ struct SurfaceBuffers {
   Buffer<int> first_vertex;              ///< [objects + 1] vertices of an object are consecutive
   Buffer<int> first_triangle;            ///< [objects + 1] and so are its triangles
   Buffer<char> has_frame;                ///< [objects] 1: is seen from one
+  Buffer<char> fixed;                    ///< [objects] 1: all of it is
   Buffer<char> touches_itself;           ///< [objects] 1: and is seen from the world alone
   Buffer<char> apart;                    ///< [objects objects], or empty
   Buffer<char> shuns;                    ///< [objects], or empty

@@ -48,19 +48,21 @@ struct TriggerParams {
   Real threshold = 1e3;
   int steps = 2;
   int cooldown = 3;
+  int retry = 3;
   template <class F>
   void fields(F&& f) {
     f("threshold", threshold, "Pa", Range::positive(), "blade pressure that cuts");
     f("steps", steps, "1", Range::closed(1, 1000), "steps on end that it must last");
     f("cooldown", cooldown, "1", Range::closed(0, 1000), "steps after a cut in which none is made");
+    f("retry", retry, "1", Range::closed(0, 1000), "steps after a refused cut in which none is tried");
   }
 };
 
 /// Counts the steps of one strip towards a cut. Part of the state of a run.
 struct CutTrigger {
   int above = 0;    ///< steps on end with the pressure at the threshold or above
-  int waiting = 0;  ///< steps of the cooldown that are left
-  /// Once at the end of each step. @returns whether to cut now; the cooldown then starts, also where the cut is refused.
+  int waiting = 0;  ///< steps of the cooldown, or until the next try, that are left
+  /// Once at the end of each step. @returns whether to cut now; the cooldown then starts.
   bool update(Real peak, const TriggerParams& params) {
     if (waiting > 0) {
       --waiting;

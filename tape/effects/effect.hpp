@@ -22,9 +22,8 @@ namespace tape {
 ///   static constexpr bool on_blocks = true     the stencil names blocks of unknowns, not vertices: no relocation
 ///   bool lag(pair, s, Element& out)            elements are made at the start of each step, from the contact pairs for which this
 ///                                              returns true (s.x is s.x_start then)
-///   static constexpr bool free_vertices = true the stencil names strip vertices only: nothing to relocate
-///   static constexpr bool sleeps = true        an element whose vertices are all members of one cluster is left out: its energy is
-///                                              constant, or the mass of the cluster stands for it
+///   static constexpr bool sleeps = true        an element whose vertices one body carries is left out, as its energy is constant; of
+///                                              elements of single vertices those without mass, which a cluster has in their place
 ///   static constexpr bool incremental = true   its energy belongs to the step and is not stored: inertia, friction
 ///   static constexpr bool contact_pairs = true elements are the candidates of the contact search
 ///   using Pair                                 ContactPair, or SamplePair: then `samples` to a side and count() in all

@@ -6,7 +6,6 @@ namespace tape {
 struct Inertia {
   static constexpr std::string_view name = "inertia";
   static constexpr bool sleeps = true;
-  static constexpr bool free_vertices = true;
   static constexpr bool incremental = true;
   using Params = NoParams;
   struct Element {

@@ -12,6 +12,7 @@
 #include "tape/model/film.hpp"
 #include "tape/model/mass_properties.hpp"
 #include "tape/model/moment.hpp"
+#include "tape/model/sleep_params.hpp"
 #include "tape/model/triangle_mesh.hpp"
 #include "tape/model/winding.hpp"
 
@@ -208,6 +209,7 @@ struct Scene {
   int seed = 1;
   std::optional<Model> model = {};  ///< of the rolls, over what their interfaces say
   ClusterParams cluster;            ///< of reduced rolls
+  SleepParams sleep;
   std::vector<Film> films;
   std::vector<Strip> strips;
   std::vector<Body> bodies;

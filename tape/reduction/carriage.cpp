@@ -8,7 +8,7 @@ std::vector<int> next_to_free(const Cluster& cluster, const std::vector<bool>& m
   return next;
 }
 
-Carriage carry(const Assembly& a, const std::vector<Cluster>& clusters, int collar) {
+Carriage carry(const Assembly& a, const std::vector<Cluster>& clusters, const Sleepers* sleepers, int collar) {
   Carriage c{.owner = a.owner, .local = a.local, .mass = a.mass, .body_mass = {}, .strips = {}, .next = {}, .blocks = a.first_strip_block};
   for (const BodyPart& body : a.bodies) c.body_mass.push_back(body.mass);
   std::size_t known = 0;
@@ -27,6 +27,11 @@ Carriage carry(const Assembly& a, const std::vector<Cluster>& clusters, int coll
     Real carried = 0;
     for (int v = 0; v < strip.vertices; ++v) {
       const auto i = static_cast<std::size_t>(strip.first_vertex + v);
+      if (const int on = sleepers == nullptr ? -1 : sleepers->body[i]; on >= 0) {
+        c.owner[i] = {a.bodies[static_cast<std::size_t>(on)].block, on};
+        c.local[i] = sleepers->local[i];
+        continue;
+      }
       if (!member[static_cast<std::size_t>(v)]) {
         c.owner[i] = {c.blocks++, -1, ride, ride_block};
         continue;

@@ -78,8 +78,7 @@ std::vector<int> vertices_of(const Assembly& assembly, int samples, EffectMemory
   return vertices;
 }
 
-void sort_pairs(const Assembly& assembly, const std::vector<VertexOwner>& owner, const std::vector<int>& bodies, int samples,
-                EffectMemory& awake, EffectMemory& asleep) {
+void sort_pairs(const Assembly& assembly, const std::vector<int>& as_one, int samples, EffectMemory& awake, EffectMemory& asleep) {
   const auto sort = [&]<class T>(MemoryOf<T>& up, MemoryOf<T>& down) {
     if constexpr (Remembers<T>) {
       auto all = std::move(up.pairs);
@@ -87,8 +86,9 @@ void sort_pairs(const Assembly& assembly, const std::vector<VertexOwner>& owner,
       std::ranges::sort(all, {}, [](const auto& pair) { return pair.key(); });
       up.pairs.clear(), down.pairs.clear();
       for (const auto& pair : all) {
-        bool rigid = true;
-        for_each_vertex(assembly, samples, pair, [&](int v) { rigid &= std::ranges::count(bodies, at(owner, v).body) > 0; });
+        const int first = at(as_one, at(assembly.triangles, pair.triangle)[0]);
+        bool rigid = first >= 0;
+        for_each_vertex(assembly, samples, pair, [&](int v) { rigid &= at(as_one, v) == first; });
         (rigid ? down : up).pairs.push_back(pair);
       }
     }

@@ -40,8 +40,7 @@ void weigh(const Assembly& assembly, const StripPart& strip, const std::vector<b
 /// @param samples  to the side of a triangle, of cohesive zones
 std::vector<int> vertices_of(const Assembly& assembly, int samples, EffectMemory memory);
 
-/// Brings to `awake` what of the pairs in it and in `asleep` spans a vertex that none of these bodies carries, and to `asleep` the rest;
-/// both sorted.
-void sort_pairs(const Assembly& assembly, const std::vector<VertexOwner>& owner, const std::vector<int>& bodies, int samples,
-                EffectMemory& awake, EffectMemory& asleep);
+/// Brings to `asleep` what of the pairs in it and in `awake` is among vertices that move as one, and to `awake` the rest; both sorted.
+/// @param as_one  [nv] vertices with the same number move as one; -1: with no other
+void sort_pairs(const Assembly& assembly, const std::vector<int>& as_one, int samples, EffectMemory& awake, EffectMemory& asleep);
 }  // namespace tape

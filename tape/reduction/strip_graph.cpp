@@ -29,4 +29,17 @@ void StripGraph::spread(const std::vector<int>& sources, std::vector<int>& dista
     }
   }
 }
+
+void StripGraph::flood(std::vector<int>& label) const {
+  std::deque<int> next;
+  for (int v = 0; v < vertices(); ++v)
+    if (label[static_cast<std::size_t>(v)] >= 0) next.push_back(v);
+  for (; !next.empty(); next.pop_front())
+    for (int w : neighbours(next.front())) {
+      int& of_neighbour = label[static_cast<std::size_t>(w)];
+      if (of_neighbour >= 0) continue;
+      of_neighbour = label[static_cast<std::size_t>(next.front())];
+      next.push_back(w);
+    }
+}
 }  // namespace tape

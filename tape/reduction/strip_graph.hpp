@@ -15,6 +15,8 @@ class StripGraph {
   }
   /// Lowers each of `distance` [vertices] to the number of edges to the nearest source where that is less.
   void spread(const std::vector<int>& sources, std::vector<int>& distance) const;
+  /// Gives each vertex whose label is -1 that of the nearest by edges with another one, if there is one.
+  void flood(std::vector<int>& label) const;
 
  private:
   std::vector<int> begin_, neighbour_;  ///< of vertex v: neighbour_[begin_[v] ... begin_[v + 1])

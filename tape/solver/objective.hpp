@@ -21,10 +21,6 @@ inline constexpr bool is_contact = requires(const T& t, const ContactPair& p, co
 || requires { T::contact_pairs; }
 || Remembers<T>;
 template <class T>
-inline constexpr bool free_vertices = requires {
-  T::free_vertices;
-};
-template <class T>
 inline constexpr bool sleeps = requires {
   T::sleeps;
 };
@@ -75,14 +71,13 @@ class Objective {
  public:
   /// @param on  by effect, in the order of the list
   Objective(const Scene& scene, const EffectParams& effects, const Assembly& assembly, const std::vector<bool>& on);
-  /// Finds which elements are awake, with their blocks. Needed first, and when clusters lose members.
-  /// @param strip_vertices  vertices below this are those of strips: one that a body carries is a member of a cluster
-  void set_carriage(int blocks, int strip_vertices, const StateView& s);
+  /// Finds which elements are awake, with their blocks. Needed first, and when something else carries a vertex.
+  void set_carriage(int blocks, const StateView& s);
   /// Pairs of the contact search, for effects that work on them.
   void set_candidates(Span<const ContactPair> candidates);
   /// Fixes what lags for a step, at s.x == s.x_start.
   void begin_step(const StateView& s);
-  /// What clusters remember, so that `remember` takes none of its samples for one that sticks to nothing.
+  /// What sleeps, so that `remember` takes none of its samples for one that sticks to nothing.
   void set_asleep(const std::vector<const EffectMemory*>& memories);
   /// Makes the elements of what is remembered, at s.x == s.x_start.
   void recall(const EffectMemory& memory, const StateView& s, const detail::SurfaceView& surface);
@@ -136,7 +131,7 @@ class Objective {
   void set_pattern(const StateView& s, bool contact);
   void fill(const StateView& s, HessianMode mode, bool contact, bool hessian);
 
-  int blocks_ = 0, strip_vertices_ = 0;
+  int blocks_ = 0;
   Terms terms_;
   SlotGroupBuffers fixed_, contact_;
   Buffer<Vec3> gradient_;

@@ -43,13 +43,21 @@ struct FirstNonFinite {
 template <class T>
 struct FlagAwake {
   T term;
-  int strip_vertices;
-  Span<const VertexOwner> owner;
+  StateView s;
   Span<int> flag;  // [count + 1], the last stays 0
-  TAPE_HD void operator()(int i) const {
-    flag[i] = 0;
-    if (i + 1 == flag.size) return;
-    for (int v : term.stencil(i).id) flag[i] |= v >= strip_vertices || owner[v].body < 0 ? 1 : 0;
+  TAPE_HD void operator()(int i) const { flag[i] = i + 1 < flag.size && is_awake(i) ? 1 : 0; }
+
+ private:
+  TAPE_HD bool is_awake(int i) const {
+    const auto stencil = term.stencil(i);
+    if constexpr (stencil_size<T> == 1) {
+      return s.mass[stencil.id[0]] != 0;
+    } else {
+      const int body = s.owner[stencil.id[0]].body;
+      bool one = body >= 0;
+      for (int v : stencil.id) one = one && s.owner[v].body == body;
+      return !one;
+    }
   }
 };
 /// Of the derivatives, where the elements of an effect have written them.
@@ -104,13 +112,13 @@ struct MakeLagged {
   }
 };
 
-/// Blocks of element i: relocated vertices, or the stencil itself where it names blocks or free vertices.
+/// Blocks of element i: relocated vertices, or the stencil itself where it names blocks.
 template <class T>
 TAPE_HD auto blocks_of(const T& term, const StateView& s, int i) {
-  if constexpr (on_blocks<T> || free_vertices<T>) {
+  if constexpr (on_blocks<T>) {
     DirectBlocks<stencil_size<T>> r;
     const auto stencil = term.stencil(i);
-    for (int a = 0; a < stencil_size<T>; ++a) r.block[a] = on_blocks<T> ? stencil.id[a] : s.owner[stencil.id[a]].block;
+    for (int a = 0; a < stencil_size<T>; ++a) r.block[a] = stencil.id[a];
     return r;
   } else {
     return relocate(term.stencil(i), s);
@@ -292,8 +300,8 @@ inline Objective::Objective(const Scene& scene, const EffectParams& effects, con
   std::apply([&](auto&... term) { (build(term), ...); }, terms_);
 }
 
-inline void Objective::set_carriage(int blocks, int strip_vertices, const StateView& s) {
-  blocks_ = blocks, strip_vertices_ = strip_vertices;
+inline void Objective::set_carriage(int blocks, const StateView& s) {
+  blocks_ = blocks;
   gradient_.resize(blocks_);
   set_pattern(s, false);
   matrix_.set_fixed_pattern(blocks_, fixed_.keys.span());
@@ -408,7 +416,7 @@ inline void Objective::set_pattern(const StateView& s, bool contact) {
     }
     if constexpr (sleeps<T>) {
       scratch_.resize(n + 1);
-      parallel_for(n + 1, objective::FlagAwake<T>{term.view, strip_vertices_, s.owner, scratch_.span()});
+      parallel_for(n + 1, objective::FlagAwake<T>{term.view, s, scratch_.span()});
       term.count = exclusive_scan(scratch_.span());
       term.active.resize(term.count < n ? term.count : 0);
       if (term.count < n) parallel_for(n, objective::Compact{scratch_.span(), term.active.span()});

@@ -8,6 +8,7 @@
 #include "tape/cutting/transfer.hpp"
 #include "tape/effects/barrier.inl"
 #include "tape/step/reduce.hpp"
+#include "tape/step/sleep.hpp"
 
 namespace tape {
 namespace {
@@ -172,8 +173,9 @@ CutReport cut_by(World& world, State& state, const Blade& blade, const BladePres
   for (int t : pressure.above)
     if (t != pressure.triangle && strip_of(world, t) == strip) targets.push_back(t - part.first_triangle);
   World next;
-  State after;
-  if (Surgery(world, state, strip, report).cut(targets, next, after)) {
+  State awake = state, after;
+  wake_tape(world, awake);
+  if (Surgery(world, awake, strip, report).cut(targets, next, after)) {
     world = std::move(next);
     state = std::move(after);
   }
@@ -253,10 +255,12 @@ std::vector<CutReport> cut_strips(World& world, State& state, const std::vector<
   for (std::size_t b = 0; b < pressures.size(); ++b) {
     CutTrigger& trigger = state.triggers[b];
     if (!trigger.update(pressures[b].peak, params)) continue;
-    if (out.empty())
-      out.push_back(cut_by(world, state, world.setup.scene.blades[b], pressures[b]));
-    else
+    if (!out.empty()) {
       trigger = {params.steps - 1, 0};
+      continue;
+    }
+    out.push_back(cut_by(world, state, world.setup.scene.blades[b], pressures[b]));
+    if (!out.back().refusal.empty()) state.triggers[b].waiting = params.retry;
   }
   return out;
 }

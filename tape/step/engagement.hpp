@@ -16,7 +16,7 @@ Adhesion adhesion_of(const World& world, const Name& pair) {
   return world.setup.scene.adhesion(material(sticking_vertices(world, pair)[0]), material(triangle));
 }
 
-/// All pairs that are remembered, those asleep in clusters too.
+/// All pairs that are remembered, those asleep too.
 template <class F>
 void for_each_remembered(const State& state, F&& f) {
   const auto each = [&](const auto&... of_effect) {
@@ -28,6 +28,7 @@ void for_each_remembered(const State& state, F&& f) {
   };
   std::apply(each, state.memory);
   for (const Cluster& cluster : state.clusters) std::apply(each, *cluster.asleep);
+  if (state.sleepers) std::apply(each, state.sleepers->asleep);
 }
 
 /// How much adhesion is left at each vertex of the strips [strip vertices], in [0, 1]: the most of all pairs that name it. Of a pair: its

@@ -21,24 +21,26 @@ ClusterPlace place_of(const World& world, std::size_t cluster) {
   const std::size_t body = static_cast<std::size_t>(world.first_cluster()) + cluster;
   const BodyPart& part = world.assembly.bodies[body];
   const auto strip = static_cast<std::size_t>(part.cluster_of);
-  return {cluster, body, part, world.assembly.strips[strip], world.graphs[cluster], world.setup.scene.strips[strip]};
+  return {cluster, body, part, world.assembly.strips[strip], world.graphs[strip], world.setup.scene.strips[strip]};
 }
 int samples(const World& world) { return params<CohesiveZone>(world.setup.effects).samples; }
 int collar(const World& world) { return world.setup.scene.cluster.collar; }
 
 Mat3 inertia_in_world(const BodyMass& mass, const Mat3& R) { return R * inertia_tensor(mass.second) * R.transpose(); }
 
-/// Bodies of which no pairs are awake: the cluster, and its hub if it rests there.
-std::vector<int> as_one(const ClusterPlace& at, const Cluster& cluster) {
-  std::vector<int> bodies{static_cast<int>(at.body)};
-  if (cluster.rest) bodies.push_back(at.roll.winding->hub);
-  return bodies;
+/// [nv] 0: one of these bodies carries it, else -1.
+std::vector<int> as_one(const Carriage& carriage, const std::vector<int>& bodies) {
+  std::vector<int> out;
+  for (const VertexOwner& owner : carriage.owner) out.push_back(std::ranges::count(bodies, owner.body) > 0 ? 0 : -1);
+  return out;
 }
 void put_to_sleep(const World& world, const ClusterPlace& at, State& state) {
   const Carriage c = carry(world, state);
   Cluster& cluster = state.clusters[at.cluster];
   EffectMemory asleep = *cluster.asleep;
-  sort_pairs(world.assembly, c.owner, as_one(at, cluster), samples(world), state.memory, asleep);
+  std::vector<int> bodies{static_cast<int>(at.body)};
+  if (cluster.rest) bodies.push_back(at.roll.winding->hub);
+  sort_pairs(world.assembly, as_one(c, bodies), samples(world), state.memory, asleep);
   cluster.asleep = std::make_shared<const EffectMemory>(std::move(asleep));
 }
 
@@ -87,7 +89,9 @@ void let_go(const World& world, const ClusterPlace& at, const std::vector<bool>&
 }
 }  // namespace
 
-Carriage carry(const World& world, const State& state) { return carry(world.assembly, state.clusters, collar(world)); }
+Carriage carry(const World& world, const State& state) {
+  return carry(world.assembly, state.clusters, state.sleepers.get(), collar(world));
+}
 
 SurfaceCarriage surface_carriage(const World& world, const State& state, const Carriage& carriage) {
   SurfaceCarriage out{.owner = {carriage.owner.begin(), carriage.owner.begin() + world.assembly.surface_vertices},
@@ -170,7 +174,7 @@ void form_cluster(const World& world, State& state) {
   weigh(world.assembly, at.strip, is, cluster);
   state.bodies.push_back({.pose = {Mat3::Identity(), cluster.centre}});
   take_motion(world, at, is, state);
-  if (state.clusters.size() == world.graphs.size())
+  if (std::ssize(state.clusters) == world.clusters())
     for (std::size_t k = 0; k < state.clusters.size(); ++k) put_to_sleep(world, place_of(world, k), state);
 }
 
@@ -217,7 +221,7 @@ std::optional<Rest> place_of_rest(const World& world, const State& state, std::s
   const Carriage carriage = carry(world, state);
   if (world.assembly.bodies[hub].block < 0 || carriage.mass[static_cast<std::size_t>(at.part.centre)] == 0) return {};
   EffectMemory awake = state.memory, joins;
-  sort_pairs(world.assembly, carriage.owner, {static_cast<int>(at.body), static_cast<int>(hub)}, samples(world), awake, joins);
+  sort_pairs(world.assembly, as_one(carriage, {static_cast<int>(at.body), static_cast<int>(hub)}), samples(world), awake, joins);
   std::vector<int> touch = vertices_of(world.assembly, samples(world), joins);
   if (touch.empty()) return {};  // friction alone holds it, and gives way
   Rest rest{.at = on_hub(state.bodies[hub].pose, state.bodies[at.body].pose, state.clusters[k].centre),
@@ -253,7 +257,7 @@ RestingPairs resting_pairs(const World& world, const Carriage& carriage, const S
   const ClusterPlace at = place_of(world, k);
   const Cluster& cluster = state.clusters[k];
   RestingPairs out{.with_hub = {}, .of_members = *cluster.asleep, .x = vertex_positions(world, state)};
-  sort_pairs(world.assembly, carriage.owner, {static_cast<int>(at.body)}, samples(world), out.with_hub, out.of_members);
+  sort_pairs(world.assembly, as_one(carriage, {static_cast<int>(at.body)}), samples(world), out.with_hub, out.of_members);
   const Pose stood = stands(cluster.rest->at, state.bodies[static_cast<std::size_t>(at.roll.winding->hub)].pose, cluster.centre);
   for (int v = at.strip.first_vertex; v < at.strip.first_vertex + at.strip.vertices; ++v)
     if (const auto i = static_cast<std::size_t>(v); carriage.owner[i].body == static_cast<int>(at.body))
@@ -264,7 +268,7 @@ RestingPairs resting_pairs(const World& world, const Carriage& carriage, const S
 void wake(const World& world, const Carriage& carriage, std::size_t k, EffectMemory of_members, EffectMemory with_hub, State& state) {
   state.clusters[k].rest = nullptr;
   state.clusters[k].asleep = std::make_shared<const EffectMemory>(std::move(of_members));
-  sort_pairs(world.assembly, carriage.owner, {}, samples(world), state.memory, with_hub);
+  sort_pairs(world.assembly, as_one(carriage, {}), samples(world), state.memory, with_hub);
 }
 
 std::vector<TapePart> tape_parts(const World& world, const State& state) {
@@ -277,6 +281,8 @@ std::vector<TapePart> tape_parts(const World& world, const State& state) {
       if (member[v] || (*cluster.distance)[v] > 0)
         parts[static_cast<std::size_t>(at.strip.first_vertex) + v] = member[v] ? TapePart::cluster : TapePart::collar;
   }
+  for (std::size_t v = 0; state.sleepers && v < parts.size(); ++v)
+    if (state.sleepers->body[v] >= 0) parts[v] = TapePart::asleep;
   return parts;
 }
 

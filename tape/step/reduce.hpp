@@ -10,8 +10,8 @@ void form_cluster(const World& world, State& state);
 Carriage carry(const World& world, const State& state);
 /// The same for contact: what is wound follows its cluster while that has members, else its hub.
 SurfaceCarriage surface_carriage(const World& world, const State& state, const Carriage& carriage);
-/// [strip vertices] what each is part of; tape that is not reduced is free.
-enum class TapePart { free, collar, cluster };
+/// [strip vertices] what each is part of; tape that is neither reduced nor asleep is free.
+enum class TapePart { free, collar, cluster, asleep };
 std::vector<TapePart> tape_parts(const World& world, const State& state);
 /// [strip vertices] m/s; members of clusters move as these do.
 std::vector<Vec3> velocities(const World& world, const State& state);

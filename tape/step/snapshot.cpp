@@ -70,6 +70,25 @@ void visit_state(State& s, const Visit& visit) {
          rest,
          std::make_shared<const EffectMemory>(asleep)};
   }
+  const auto visit_bodies = [&](std::vector<int>& bodies) {  // and -1
+    for (int& b : bodies) ++b, visit(b), --b;
+  };
+  if (visit.count(s.sleepers ? 1 : 0) != 0) {
+    Sleepers copy = s.sleepers ? *s.sleepers : Sleepers{};
+    copy.body.resize(s.x.size()), copy.local.resize(s.x.size());
+    visit_bodies(copy.body);
+    for (Vec3& y : copy.local) visit(y);
+    visit_memory(copy.asleep);
+    s.sleepers = std::make_shared<const Sleepers>(std::move(copy));
+  }
+  if (visit.count(s.glance ? 1 : 0) != 0) {
+    Glance copy = s.glance ? *s.glance : Glance{};
+    copy.x.resize(s.x.size()), copy.body.resize(s.bodies.size()), copy.frame.resize(s.x.size());
+    for (Vec3& p : copy.x) visit(p);
+    for (Pose& pose : copy.body) visit(pose.rotation), visit(pose.position);
+    visit_bodies(copy.frame);
+    s.glance = std::make_shared<const Glance>(std::move(copy));
+  }
 }
 
 /// What cuts have left of the strips, of which the sizes of all else follow.
@@ -185,6 +204,17 @@ void check_state(const World& world, const State& state) {
     if (std::ranges::any_of(c.rest->vertices, [&](int v) { return v >= std::ssize(*c.local); }))
       throw InputError("a cluster rests by vertices that there are not");
   }
+  const auto check_bodies = [&](const std::vector<int>& bodies) {
+    if (std::ranges::any_of(bodies, [&](int b) { return b >= world.first_cluster(); }))
+      throw InputError("tape sleeps on bodies that there are not");
+  };
+  if (state.sleepers) {
+    check_bodies(state.sleepers->body);
+    std::apply(check, state.sleepers->asleep);
+    const std::vector<VertexTriangle> asleep = pairs_out_of_contact(state.sleepers->asleep);
+    bonded.insert(bonded.end(), asleep.begin(), asleep.end());
+  }
+  if (state.glance) check_bodies(state.glance->frame);
   std::ranges::sort(bonded, {}, &VertexTriangle::key);
   check_start(vertex_positions(world, state), world.surface, world.setup.scene.dhat(), bonded);
 }
@@ -239,7 +269,7 @@ std::string world_hash(const World& world) {
   for (const Vec2& r : world.assembly.rest) digest.x.push_back({r.x(), r.y(), 0});
   digest.x.insert(digest.x.end(), world.assembly.local.begin(), world.assembly.local.end());
   for (const VertexOwner& o : world.assembly.owner) digest.x.push_back({static_cast<Real>(o.block), static_cast<Real>(o.body), 0});
-  if (!world.graphs.empty()) {  // clusters have their members' mass
+  if (world.clusters() > 0) {  // they have their members' mass
     digest.x.push_back({static_cast<Real>(world.setup.scene.cluster.collar), 0, 0});
     for (int v = 0; v < world.assembly.strip_vertices; ++v) digest.x.push_back({world.assembly.mass[static_cast<std::size_t>(v)], 0, 0});
   }

@@ -26,7 +26,7 @@ struct StageReport {
   Real ms = 0;
 };
 
-/// What an adhesive interface carries at the end of a step.
+/// What an adhesive interface carries at the end of a step, of what is awake.
 struct AdhesionReport {
   Real normal = 0;      ///< [N] sum over pairs of the forces that hold them together
   Real tangential = 0;  ///< [N] sum over pairs of the magnitudes of the forces against sliding
@@ -62,7 +62,8 @@ struct StepReport {
   std::vector<EffectReport> effects;
   std::vector<StageReport> stages;
   Real adhesion_work = 0;  ///< [J] change of the energy of what adheres by what was remembered of the step: growth of beta adds
-  Real woken = 0;          ///< [J] stored in what woke when clusters lost members, at the end
+  Real woken = 0;          ///< [J] stored in what has woken, less that in what has fallen asleep, at the end
+  int asleep = 0;          ///< strip vertices that bodies carry because they lie still there, at the end
   std::vector<AdhesionReport> adhesion;           ///< [Scene::adhesives]
   std::vector<Vec3> grip_force;                   ///< [grips] N that the grip exerts on what it holds
   std::vector<Real> axle_torque;                  ///< [axles] N m that the axle exerts on the body, about its axis

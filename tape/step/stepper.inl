@@ -18,6 +18,7 @@
 #include "tape/step/cut.hpp"
 #include "tape/step/finish.hpp"
 #include "tape/step/reduce.hpp"
+#include "tape/step/sleep.hpp"
 #include "tape/step/stepper.hpp"
 
 namespace tape::TAPE_SIDE {
@@ -127,9 +128,10 @@ class SideStepper final : public Stepper {
     reset_times();
     {
       const Stopwatch watch(report.wall_ms);
+      if (grip_wakes_tape(world_, state)) report.woken = wake_all(state);
       std::optional<State> next = advance(state, dt, world_.setup.newton.retries, report);
       if (is_to_wake(state, next)) {
-        report.woken = wake_all(state);
+        report.woken += wake_all(state);
         report.failure.clear();
         take(exchange);
         next = advance(state, dt, world_.setup.newton.retries, report);
@@ -140,10 +142,11 @@ class SideStepper final : public Stepper {
         ++next->step;
         next->time = next->step * dt;
         finish_step(world_, carriage_, state, *next, dt, report);
-        report.woken += move_fronts(state, *next) + settle_clusters(state, *next);
+        report.woken += move_fronts(state, *next) + settle_clusters(state, *next) + let_tape_sleep(state, *next);
         state = std::move(*next);
       }
     }
+    report.asleep = sleeping(state);
     collect(report);
     return report;
   }
@@ -187,28 +190,34 @@ class SideStepper final : public Stepper {
     body_mass_.upload(carriage_.body_mass);
     SystemLayout layout;
     for (std::size_t s = 0; s < carriage_.strips.size(); ++s)
-      layout.strips.push_back({carriage_.strips[s].block, carriage_.strips[s].blocks, world_.assembly.strips[s].columns});
+      if (carriage_.strips[s].blocks > 0)
+        layout.strips.push_back({carriage_.strips[s].block, carriage_.strips[s].blocks, world_.assembly.strips[s].columns});
     for (int block : body_block)
       if (block >= 0) layout.body_blocks.push_back(block);
     linear_.set_layout(articulations_.any() ? articulations_.set_layout(layout, carriage_.blocks) : std::move(layout));
     if (search_) search_->set_carriage(surface_carriage(world_, state, carriage_));
     for (Buffer<Vec3>* blocks : {&direction_, &right_, &points_}) blocks->resize(carriage_.blocks);
     objective_->set_seats(seats(world_, state));
-    objective_->set_carriage(carriage_.blocks, world_.assembly.strip_vertices, view(now_));
+    objective_->set_carriage(carriage_.blocks, view(now_));
     std::vector<const EffectMemory*> asleep;
     for (const Cluster& cluster : state.clusters) asleep.push_back(cluster.asleep.get());
+    if (state.sleepers) asleep.push_back(&state.sleepers->asleep);
     objective_->set_asleep(asleep);
   }
-  /// Which members a state's clusters have, and where they rest.
-  using Fronts = std::vector<std::pair<std::shared_ptr<const std::vector<int>>, std::shared_ptr<const Rest>>>;
+  /// Which members a state's clusters have and where they rest, and what tape sleeps.
+  struct Fronts {
+    std::vector<std::pair<std::shared_ptr<const std::vector<int>>, std::shared_ptr<const Rest>>> clusters;
+    std::shared_ptr<const Sleepers> sleepers;
+  };
   static Fronts fronts(const State& state) {
-    Fronts out;
-    for (const Cluster& c : state.clusters) out.emplace_back(c.distance, c.rest);
+    Fronts out{{}, state.sleepers};
+    for (const Cluster& c : state.clusters) out.clusters.emplace_back(c.distance, c.rest);
     return out;
   }
   static bool same(const Fronts& a, const Fronts& b) {
-    return std::ranges::equal(
-        a, b, [](const auto& p, const auto& q) { return p.second == q.second && (p.first == q.first || *p.first == *q.first); });
+    return a.sleepers == b.sleepers && std::ranges::equal(a.clusters, b.clusters, [](const auto& p, const auto& q) {
+             return p.second == q.second && (p.first == q.first || *p.first == *q.first);
+           });
   }
 
   /// Takes up what is exchanged in a step.
@@ -365,13 +374,23 @@ class SideStepper final : public Stepper {
              return rest.has_value();
            });
   }
-  /// Wakes the clusters that rest at the start of a step. @return as settle_clusters
+  /// Lets tape sleep that lies still, and wakes what is disturbed. @return as settle_clusters
+  Real let_tape_sleep(const State& before, State& after) {
+    if (!search_ || !is_to_look_at_tape(world_, after)) return 0;
+    const Stopwatch watch(front_ms_);
+    std::vector<ContactPair> near = pairs_on_host(search_->candidates());
+    const std::vector<ContactPair> bonded = pairs_on_host(search_->bonded());
+    near.insert(near.end(), bonded.begin(), bonded.end());
+    return settle_tape(world_, before, near, after) ? take_up_change(after) : 0;
+  }
+  /// Wakes all that sleeps at the start of a step. @return as settle_clusters
   Real wake_all(State& state) {
     const Stopwatch watch(front_ms_);
     begin(state, dt_);
     recall(state.memory);
     for (std::size_t k = 0; k < state.clusters.size(); ++k)
       if (state.clusters[k].rest) wake_up(k, state);
+    wake_tape(world_, state);
     return take_up_change(state);
   }
   /// After clusters have changed in a state that is at now_. @return [J] by which that changes what is stored
@@ -402,9 +421,10 @@ class SideStepper final : public Stepper {
     rest->form = objective_->between(s, seat.hub, seat.cluster, hub.position).seen_from(hub.rotation);
     return rest;
   }
-  /// Whether a step must be taken with all clusters awake: they are farther off their rest than its form holds, or it failed.
+  /// Whether a step must be taken with all awake: clusters are farther off their rest than its form holds, or it failed.
   bool is_to_wake(const State& start, const std::optional<State>& end) const {
     constexpr Real kFar = 2;  // reaches; not yet through a gap
+    if (start.sleepers && !end) return true;
     for (std::size_t k = 0; k < start.clusters.size(); ++k)
       if (start.clusters[k].rest && (!end || !(off_its_rest(world_, carriage_, *end, k) <= kFar))) return true;
     return false;
@@ -529,6 +549,7 @@ class SideStepper final : public Stepper {
       energy_ = energy(now_);
     }
     if (!std::isfinite(energy_.sum)) return fail(report, "not finite at the start: " + objective_->first_non_finite(view(now_)));
+    if (carriage_.blocks == 0) return true;  // all there is rests on what does not move
     let_go_energy_ = 0;
     setting_out_ = articulations_.any();
     do {
@@ -763,8 +784,11 @@ class SideStepper final : public Stepper {
     }
     report.stages.insert(report.stages.end(),
                          {{"assembly", assembly_ms_}, {"linear_solver", linear_ms_}, {"line_search", line_search_ms_}});
-    if (!world_.graphs.empty()) report.stages.push_back({"front", front_ms_});
+    if (carries_tape()) report.stages.push_back({"front", front_ms_});
   }
+
+  /// Whether tape may be carried by something.
+  bool carries_tape() const { return world_.clusters() > 0 || world_.setup.scene.sleep.after > 0; }
 
   static std::vector<ContactPair> pairs_on_host(Span<const ContactPair> pairs) {
     Buffer<ContactPair> copy;

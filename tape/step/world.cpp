@@ -72,8 +72,7 @@ void World::lay_out() {
   assembly = assemble(setup.scene);
   surface = make_surface(setup.scene, assembly);
   graphs.clear();
-  for (const BodyPart& body : assembly.bodies)
-    if (body.cluster_of >= 0) graphs.emplace_back(assembly, assembly.strips[static_cast<std::size_t>(body.cluster_of)]);
+  for (const StripPart& strip : assembly.strips) graphs.emplace_back(assembly, strip);
 }
 
 World World::with(const Remnants& remnants) const {
@@ -152,6 +151,16 @@ std::string State::hash() const {
       rest.visit([&](auto& value) { hash.add(&value, sizeof value); });
     }
     add_memory(*c.asleep);
+  }
+  if (sleepers) {
+    hash.add(sleepers->body.data(), sleepers->body.size() * sizeof(int));
+    hash.add(sleepers->local.data(), sleepers->local.size() * sizeof(Vec3));
+    add_memory(sleepers->asleep);
+  }
+  if (glance) {
+    hash.add(glance->x.data(), glance->x.size() * sizeof(Vec3));
+    for (const Pose& pose : glance->body) hash.add(pose.rotation.data(), sizeof(Mat3)), hash.add(pose.position.data(), sizeof(Vec3));
+    hash.add(glance->frame.data(), glance->frame.size() * sizeof(int));
   }
   return hash.text();
 }

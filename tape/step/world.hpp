@@ -11,6 +11,7 @@
 #include "tape/effects/effects.hpp"
 #include "tape/model/scene.hpp"
 #include "tape/reduction/carriage.hpp"
+#include "tape/reduction/strip_graph.hpp"
 #include "tape/solver/linear_params.hpp"
 #include "tape/solver/params.hpp"
 
@@ -41,7 +42,7 @@ struct World {
   Setup setup;
   Assembly assembly;
   SurfaceMesh surface;
-  std::vector<StripGraph> graphs;  ///< [clusters] of their strips
+  std::vector<StripGraph> graphs;  ///< [strips]
   std::vector<PlanLine> plan;      ///< in the order of the list of effects
 
   /// Checks settings and initial state.  @throws InputError saying what is wrong and where
@@ -50,6 +51,7 @@ struct World {
   World with(const Remnants& remnants) const;
   bool is_on(std::string_view effect) const;
   int first_cluster() const { return static_cast<int>(setup.scene.bodies.size()); }  ///< body that is the first cluster
+  int clusters() const { return static_cast<int>(assembly.bodies.size()) - first_cluster(); }
 
  private:
   void lay_out();
@@ -72,9 +74,11 @@ struct State {
   std::vector<CutTrigger> triggers;  ///< [Scene::blades]
   Remnants remnants;                 ///< [strips]
   std::vector<Real> events;          ///< [Scene::events] s, when each has happened; infinite if it has not
-  EffectMemory memory;               ///< of pairs that adhere, but for those asleep in clusters
+  EffectMemory memory;               ///< of pairs that adhere and are awake
   std::vector<Real> outside;         ///< what whoever simulates the articulations needs to go on: theirs to read
   std::vector<Cluster> clusters;     ///< of reduced rolls, in the order of the bodies that they are; members keep the x of the last step
+  std::shared_ptr<const Sleepers> sleepers;  ///< null: no tape sleeps
+  std::shared_ptr<const Glance> glance;      ///< the last look at how still tape lies; null: none yet
 
   static State start(const World& world);
   /// 64-bit FNV-1a of all bits above, as 16 hexadecimal digits.

@@ -45,7 +45,12 @@ struct Reduced {
     weigh(assembly, part(), is_member(), cluster);
   }
   std::vector<bool> is_member() const { return members(assembly, part(), cluster, kCollar); }
-  Carriage carriage() const { return carry(assembly, {cluster}, kCollar); }
+  std::vector<int> carriers() const {
+    std::vector<int> out;
+    for (const VertexOwner& owner : carriage().owner) out.push_back(owner.body);
+    return out;
+  }
+  Carriage carriage() const { return carry(assembly, {cluster}, nullptr, kCollar); }
 };
 int count(const std::vector<bool>& flags) { return static_cast<int>(std::ranges::count(flags, true)); }
 }  // namespace
@@ -122,7 +127,7 @@ TEST(Cluster, PairsBetweenMembersSleep) {
     m.vertex = vertex, m.triangle = triangle, m.beta = 0.1 * vertex, m.slip.setZero();
     pairs.push_back(m);
   }
-  sort_pairs(r.assembly, r.carriage().owner, {0}, 1, awake, asleep);
+  sort_pairs(r.assembly, r.carriers(), 1, awake, asleep);
   const std::vector<Cohesion::Memory>& down = std::get<MemoryOf<Cohesion>>(asleep).pairs;
   ASSERT_EQ(down.size(), 2u);
   EXPECT_EQ(down[0].vertex, 0);
@@ -130,7 +135,7 @@ TEST(Cluster, PairsBetweenMembersSleep) {
   EXPECT_EQ(down[1].beta, 0.1 * (kColumns * 6 - 1));
   EXPECT_EQ(pairs.size(), 3u);
   r.cluster.distance = std::make_shared<const std::vector<int>>(static_cast<std::size_t>(r.part().vertices), 0);  // all of it is free
-  sort_pairs(r.assembly, r.carriage().owner, {0}, 1, awake, asleep);
+  sort_pairs(r.assembly, r.carriers(), 1, awake, asleep);
   EXPECT_TRUE(down.empty());
   EXPECT_EQ(pairs.size(), 5u);
   EXPECT_TRUE(std::ranges::is_sorted(pairs, {}, [](const auto& p) { return p.key(); }));

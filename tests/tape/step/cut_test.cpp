@@ -126,6 +126,16 @@ TEST(Cut, ARefusedOneLeavesWorldAndStateAsTheyAre) {
   EXPECT_EQ(same.hash(), before) << "but for the cooldown";
   EXPECT_EQ(s.world().assembly.strip_vertices, std::ssize(s.state().x));
 }
+TEST(Cut, IsFollowedByACooldownAndWhereRefusedByAnotherTry) {
+  for (const auto& [height, waiting] : {std::pair{2e-3, 7}, {0.05, 2}}) {  // the second is out of the blade's reach
+    tape::Setup setup = strip_under_blade(height);
+    setup.cutting.trigger.cooldown = 7, setup.cutting.trigger.retry = 2;
+    test::Simulation s(setup);
+    s.cut(pressed(s.world(), {0.052, 0}));
+    ASSERT_EQ(s.cuts().size(), 1u);
+    EXPECT_EQ(s.state().triggers[0].waiting, waiting) << s.cuts()[0].refusal;
+  }
+}
 TEST(Cut, TapeThatSticksGoesOnSticking) {
   constexpr bool kStickyFace[2][2] = {{false, false}, {true, true}};
   for (AdhesionLaw law : {AdhesionLaw::per_pair, AdhesionLaw::per_area, AdhesionLaw::bond}) {
