@@ -193,7 +193,7 @@ bool settle_tape(const World& world, const State& before, const std::vector<Cont
 }
 
 bool grip_wakes_tape(const World& world, const State& state) {
-  if (!state.sleepers) return false;
+  if (!state.sleepers || std::ranges::count(state.grip_closed, 0) == 0) return false;
   State closed = state;
   close_grips(world, closed);
   for (std::size_t g = 0; g < world.assembly.grips.size(); ++g) {
