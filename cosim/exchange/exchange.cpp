@@ -14,9 +14,10 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using robot::RobotState;
+using robot::Vec3;
 
 constexpr double kBare = 0.5;            // of the bare robot's inertia, that limited drives leave at least
-constexpr double kHold = 1e5;            // times the bare robot's inertia: as stiff as a joint that friction or a limit holds
+constexpr double kHold = 1e5;            // times the bare robot's inertia: as stiff as what friction, a limit or a contact holds
 constexpr double kCommandPeriod = 0.01;  // [s] at most from one command to the next
 constexpr double kHeavy = 1e6;           // times the inertia: a link that feels nothing
 /// [N/m] of the hold that closes the gap between the two worlds, as stiff as that of driven bodies.
@@ -79,24 +80,26 @@ void CoupledStepper::add_drives(const Part& part, const MatrixXd& bare, const st
   const Eigen::Index n = bare.rows();
   const VectorXd limit = bullet_.effort_limit(part.robot), effort = bullet_.drive_effort(part.robot);
   const MatrixXd driven = step.inertia.topLeftCorner(n, n);
-  VectorXd drive = VectorXd::Zero(n);
+  std::vector<tape::LimitedSpring> drives;
+  VectorXd diagonal = VectorXd::Zero(n);
   for (Eigen::Index k = n - std::ssize(part.independent), u = 0; k < n; ++k, ++u) {
     const int joint = part.independent[static_cast<std::size_t>(u)];
-    if (held[static_cast<std::size_t>(u)] || !std::isfinite(limit[joint])) continue;
-    drive[k] = std::max(0.0, driven(k, k) - bare(k, k));
-    step.least[k] = effort[joint] - limit[joint], step.most[k] = effort[joint] + limit[joint];
+    if (held[static_cast<std::size_t>(u)] || !std::isfinite(limit[joint]) || driven(k, k) <= bare(k, k)) continue;
+    diagonal[k] = driven(k, k) - bare(k, k);
+    drives.push_back({VectorXd::Unit(n + 1, k), diagonal[k], effort[joint] - limit[joint], effort[joint] + limit[joint]});
   }
-  for (const double share : {1.0, 0.9, 0.7, 0.5, 0.0}) {
-    const MatrixXd left = driven - MatrixXd(share * drive.asDiagonal());
-    if (share > 0 && (left - kBare * bare).llt().info() != Eigen::Success) continue;
-    step.drive.head(n) += share * drive;
+  for (const double share : {1.0, 0.9, 0.7, 0.5}) {
+    const MatrixXd left = driven - MatrixXd(share * diagonal.asDiagonal());
+    if ((left - kBare * bare).llt().info() != Eigen::Success) continue;
     step.inertia.topLeftCorner(n, n) = left;
+    for (tape::LimitedSpring& drive : drives) drive.stiffness *= share;
+    step.springs.insert(step.springs.end(), drives.begin(), drives.end());
     return;
   }
 }
 
-/// Gives joints that stick, or stand at a limit, what holds them, as stiff as kHold times the bare robot. There is one potential for each
-/// joint: of one that sticks and has a drive with limits, that of the stiffer drive matters.
+/// Gives joints that stick, or stand at a limit, what holds them, as stiff as kHold times the bare robot. Of a joint that sticks and has a
+/// drive with limits, the stiffer drive matters.
 /// @return [independent joints] whether they are held
 std::vector<bool> CoupledStepper::add_holds(const Part& part, const MatrixXd& bare, tape::ArticulationStep& step) const {
   const std::vector<robot::JointHold> holds = bullet_.holds(part.robot);
@@ -107,10 +110,59 @@ std::vector<bool> CoupledStepper::add_holds(const Part& part, const MatrixXd& ba
     const bool driven = std::isfinite(limit[part.independent[static_cast<std::size_t>(u)]]) && step.inertia(k, k) > 2 * bare(k, k);
     held.push_back(hold.least < hold.most && (hold.stopped || !driven));
     if (!held.back()) continue;
-    step.drive[k] = kHold * bare(k, k);
-    step.least[k] = hold.effort - hold.most, step.most[k] = hold.effort - hold.least;
+    step.springs.push_back({VectorXd::Unit(bare.rows() + 1, k), kHold * bare(k, k), hold.effort - hold.most, hold.effort - hold.least});
   }
   return held;
+}
+
+/// S of the independent motions: change of coordinates over dt by a force held over it.
+MatrixXd CoupledStepper::independent_response(int robot, double dt, bool drives) const {
+  const auto inverse = bullet_.motions(robot).completeOrthogonalDecomposition();
+  return inverse.solve(inverse.solve(bullet_.response(robot, dt, drives)).transpose());
+}
+
+/// [3, independent motions] of a point of a link.
+MatrixXd CoupledStepper::point_motion(int robot, int link, const Vec3& point) const {
+  const MatrixXd J = bullet_.jacobian(robot, link);
+  const Vec3 arm = point - bullet_.link_pose(robot, link).translation();
+  MatrixXd of_point = J.topRows(3);
+  for (Eigen::Index k = 0; k < J.cols(); ++k) of_point.col(k) += Vec3(J.col(k).tail<3>()).cross(arm);
+  return of_point * bullet_.motions(robot);
+}
+
+/// Gives a robot what its contacts in Bullet hold it by: across a contact no motion inwards, and outwards up to the force that presses;
+/// along one that sticks, up to its friction. A link of the same robot goes along as the coordinates say; another robot's gives way as that
+/// robot alone would.
+void CoupledStepper::add_contacts(const Part& part, double dt, const MatrixXd& bare, tape::ArticulationStep& step) const {
+  constexpr double kAny = std::numeric_limits<double>::infinity(), kSticks = 0.99, kFelt = 1e-9;
+  const Eigen::LLT<MatrixXd> bare_llt(bare);
+  for (const robot::Contact& c : bullet_.contacts()) {
+    MatrixXd motion = MatrixXd::Zero(3, bare.rows());
+    robot::Mat3 give = robot::Mat3::Zero();  // of the other robot
+    const auto add_side = [&](int robot, int link, double sign) {
+      if (bullet_.dof(robot) == 0) return;
+      const MatrixXd J = point_motion(robot, link, c.point);
+      if (robot == part.robot)
+        motion += sign * J;
+      else
+        give += J * independent_response(robot, dt, true) * J.transpose() / (dt * dt);
+    };
+    if (c.robot_a != part.robot && c.robot_b != part.robot) continue;
+    add_side(c.robot_a, c.link_a, 1), add_side(c.robot_b, c.link_b, -1);
+    const auto hold = [&](const Vec3& direction, double least, double most) {
+      VectorXd along = VectorXd::Zero(bare.rows() + 1);
+      along.head(bare.rows()) = motion.transpose() * direction;
+      if (along.norm() < kFelt) return;
+      const double own = along.head(bare.rows()).dot(bare_llt.solve(along.head(bare.rows())));
+      step.springs.push_back({along, 1 / (own / kHold + direction.dot(give * direction)), least, most});
+    };
+    const double pressed = c.force.dot(c.normal), friction = c.mu * pressed;
+    if (pressed <= 0) continue;
+    hold(c.normal, -kAny, pressed);
+    if ((c.force - pressed * c.normal).norm() > kSticks * friction) continue;
+    const Vec3 across = c.normal.unitOrthogonal();
+    for (const Vec3& t : {across, Vec3(c.normal.cross(across))}) hold(t, c.force.dot(t) - friction, c.force.dot(t) + friction);
+  }
 }
 
 /// What Bullet, which has just made the step under a load, says of a robot: where it would be without the load is taken from how it gives
@@ -119,28 +171,29 @@ tape::ArticulationStep CoupledStepper::predicted(const Part& part, const tape::S
                                                  const VectorXd& load) const {
   const MatrixXd T = bullet_.motions(part.robot);
   const Eigen::Index n = T.cols(), dof = T.rows();
-  const Eigen::CompleteOrthogonalDecomposition<MatrixXd> inverse(T);
   tape::ArticulationStep step;
   step.predicted = VectorXd(n + 1), step.inertia = MatrixXd::Zero(n + 1, n + 1);
-  step.predicted.head(n) = inverse.solve(change(before, bullet_.state(part.robot), dof > before.q.size()));
+  step.predicted.head(n) = T.completeOrthogonalDecomposition().solve(change(before, bullet_.state(part.robot), dof > before.q.size()));
   step.predicted[n] = 1;
   const VectorXd loaded = step.predicted.head(n);
   auto unloaded = step.predicted.head(n);
   const auto inertia = [&](bool drives) -> MatrixXd {
-    const MatrixXd S = inverse.solve(inverse.solve(bullet_.response(part.robot, dt, drives)).transpose());
-    const MatrixXd full = dt * dt * S.llt().solve(MatrixXd::Identity(n, n));
+    const MatrixXd full = dt * dt * independent_response(part.robot, dt, drives).llt().solve(MatrixXd::Identity(n, n));
     return (full + full.transpose()) / 2;
   };
   step.inertia.topLeftCorner(n, n) = inertia(true);
-  step.drive = step.least = step.most = VectorXd::Zero(n + 1);
   if (robots_.exchange.schedule == Schedule::inertial) {
     const MatrixXd bare = inertia(false);
     const std::vector<bool> held = add_holds(part, bare, step);
-    const MatrixXd whole = step.inertia.topLeftCorner(n, n) + MatrixXd(step.drive.head(n).asDiagonal());
+    add_contacts(part, dt, bare, step);
+    MatrixXd whole = step.inertia.topLeftCorner(n, n);
+    for (const tape::LimitedSpring& s : step.springs) whole += s.stiffness * s.along.head(n) * s.along.head(n).transpose();
     const VectorXd given = dt * dt * whole.llt().solve(T.transpose() * load);
     add_drives(part, bare, held, step);
-    const VectorXd by_load = step.drive.head(n).cwiseProduct(given) / (dt * dt);  // what the load has added to drives and holds
-    step.least.head(n) += by_load, step.most.head(n) += by_load;
+    for (tape::LimitedSpring& s : step.springs) {  // what the load has added to them
+      const double by_load = s.stiffness * s.along.head(n).dot(given) / (dt * dt);
+      s.least += by_load, s.most += by_load;
+    }
     unloaded -= given;
   } else {
     step.inertia *= kHeavy;
@@ -413,11 +466,14 @@ void CoupledStepper::book_momentum(const tape::StepReport& report, const std::ve
 }
 
 void CoupledStepper::note_mismatch(const tape::State& state) {
-  for (const Part& part : parts_)
-    for (std::size_t l = 0; l < part.links.size(); ++l)
-      report_.mismatch = std::max(report_.mismatch, (state.bodies[static_cast<std::size_t>(part.bodies[l])].pose.position -
-                                                     bullet_.link_pose(part.robot, part.links[l]).translation())
-                                                        .norm());
+  for (const Part& part : parts_) {
+    for (std::size_t l = 0; l < part.links.size(); ++l) {
+      const auto body = static_cast<std::size_t>(part.bodies[l]);
+      const robot::Pose& there = bullet_.link_pose(part.robot, part.links[l]);
+      for (const tape::Vec3& p : world_.setup.scene.bodies[body].mesh.vertices)
+        report_.mismatch = std::max(report_.mismatch, (tape::apply(state.bodies[body].pose, p) - there * p).norm());
+    }
+  }
 }
 
 std::unique_ptr<tape::Stepper> make_stepper(tape::Backend backend, const tape::World& world, const RobotScene& robots) {

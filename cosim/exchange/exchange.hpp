@@ -15,7 +15,7 @@ struct ExchangeReport {
   double momentum_given = 0;            ///< [N s] sum over links of the magnitude of what the tape side gave them
   std::optional<double> residual = {};  ///< [1] what of it robots with a free base did not receive; none: none was touched
   int pinching = 0;                     ///< pairs of links that touch in the tape solver
-  double mismatch = 0;                  ///< [m] farthest that a link's frame stands on the tape side from where Bullet has it
+  double mismatch = 0;                  ///< [m] farthest that a point of a link stands on the tape side from where Bullet has it
 };
 
 /// What there is to record of a robot at the end of a step.
@@ -59,6 +59,9 @@ class CoupledStepper final : public tape::Stepper {
   tape::ArticulationStep predicted(const Part& part, const tape::State& state, const robot::RobotState& before, double dt,
                                    const robot::VecX& load) const;
   std::vector<bool> add_holds(const Part& part, const Eigen::MatrixXd& bare, tape::ArticulationStep& step) const;
+  void add_contacts(const Part& part, double dt, const Eigen::MatrixXd& bare, tape::ArticulationStep& step) const;
+  Eigen::MatrixXd independent_response(int robot, double dt, bool drives) const;
+  Eigen::MatrixXd point_motion(int robot, int link, const robot::Vec3& point) const;
   void add_drives(const Part& part, const Eigen::MatrixXd& bare, const std::vector<bool>& held, tape::ArticulationStep& step) const;
   bool rests_on_tape_side(const RobotPart& robot) const;
   std::vector<robot::VecX> forces(const tape::StepReport& report) const;

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "robot/world/joint_limit.hpp"
+
 namespace robot {
 DrivenRobot::DrivenRobot(int index, const std::shared_ptr<const RobotModel>& model, const RobotParams& params)
     : drive_impulse(VecX::Zero(static_cast<Eigen::Index>(model->joints.size()))),
@@ -28,7 +30,7 @@ void DrivenRobot::add_limits() {
   for (int k = 0; k < body_.joints(); ++k) {
     const Joint& joint = body_.model().joints[static_cast<std::size_t>(k)];
     if (std::isinf(joint.lower) && std::isinf(joint.upper)) continue;
-    constraints_.push_back(std::make_unique<btMultiBodyJointLimitConstraint>(&body_.bullet(), k, joint.lower, joint.upper));
+    constraints_.push_back(std::make_unique<JointLimit>(&body_.bullet(), k, joint.lower, joint.upper));
     constraints_.back()->setMaxAppliedImpulse(BT_LARGE_FLOAT);
     constraints_.back()->finalizeMultiDof();  // Bullet does so when it first acts; we ask for its impulse before
   }

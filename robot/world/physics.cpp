@@ -179,10 +179,22 @@ std::vector<Contact> Physics::overlaps() {
   return found;
 }
 
-std::vector<Contact> Physics::contacts(Real h) const {
-  std::vector<Contact> found = points(h);
-  std::erase_if(found, [](const Contact& c) { return c.force.isZero(0); });
-  return found;
+void Physics::add_contacts(Real h, Real dt, std::vector<Contact>& contacts) const {
+  constexpr Real kAlike = 0.9;  // cosine between normals of what is one contact
+  for (Contact now : points(h)) {
+    if (now.force.isZero(0)) continue;
+    now.force *= h / dt;
+    const auto same = std::ranges::find_if(contacts, [&](const Contact& c) {
+      return c.robot_a == now.robot_a && c.link_a == now.link_a && c.robot_b == now.robot_b && c.link_b == now.link_b &&
+             (c.point - now.point).norm() < kReach && c.normal.dot(now.normal) > kAlike;
+    });
+    if (same == contacts.end()) {
+      contacts.push_back(now);
+      continue;
+    }
+    now.force += same->force;
+    *same = now;
+  }
 }
 
 std::vector<Contact> Physics::points(Real h) const {
@@ -196,7 +208,7 @@ std::vector<Contact> Physics::points(Real h) const {
       const btVector3 impulse = p.m_appliedImpulse * p.m_normalWorldOnB + p.m_appliedImpulseLateral1 * p.m_lateralFrictionDir1 +
                                 p.m_appliedImpulseLateral2 * p.m_lateralFrictionDir2;
       points.push_back({robot_a, link_a, robot_b, link_b, from_bullet(p.getPositionWorldOnB()), from_bullet(p.m_normalWorldOnB),
-                        from_bullet(impulse) / h, p.getDistance()});
+                        from_bullet(impulse) / h, p.m_combinedFriction, p.getDistance()});
     }
   }
   return points;

@@ -21,7 +21,8 @@ class Physics {
   const std::vector<std::unique_ptr<DrivenRobot>>& robots() const { return robots_; }
   /// Pairs of links that never touch, each sorted.
   std::set<std::pair<LinkId, LinkId>> apart;
-  std::vector<Contact> contacts(Real h) const;
+  /// Adds the contacts of the last substep, of length h, to those of a step of length dt.
+  void add_contacts(Real h, Real dt, std::vector<Contact>& contacts) const;
   std::vector<Contact> overlaps();
   int unsettled = 0;  ///< substeps so far in which drives' limits, joints' friction and contacts did not agree
 

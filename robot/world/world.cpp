@@ -102,14 +102,15 @@ void World::step(Real dt, const std::vector<VecX>& tau, const std::function<void
     for (VecX* impulse : {&r.drive_impulse, &r.friction_impulse, &r.limit_impulse}) impulse->setZero();
   }
   impl_->physics.unsettled = 0;
+  impl_->contacts.clear();
   const int count = substeps(dt, impl_->params.substep);
   const Real h = dt / count;
   for (int s = 0; s < count; ++s) {
     if (before) before((s + 1) * h);
     impl_->physics.substep(h, forces);
+    impl_->physics.add_contacts(h, dt, impl_->contacts);
   }
   impl_->last_dt = dt;
-  impl_->contacts = impl_->physics.contacts(h);
 }
 
 Snapshot World::save() const {

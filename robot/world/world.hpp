@@ -37,13 +37,14 @@ struct JointHold {
   bool stopped = false;      ///< a limit holds it, too
 };
 
-/// A touching point in the last substep.
+/// Where links touch in a step; points of its substeps that are as near to each other as links come before they count as touching are one.
 struct Contact {
   int robot_a = 0, link_a = 0, robot_b = 0, link_b = 0;
   Vec3 point;         ///< [m] on b
   Vec3 normal;        ///< from b to a
-  Vec3 force;         ///< [N] of b on a
-  Real distance = 0;  ///< [m] before the substep; negative: penetration
+  Vec3 force;         ///< [N] of b on a, mean over the step
+  Real mu = 0;        ///< [1] friction of the pair
+  Real distance = 0;  ///< [m] before the last substep in which it touches; negative: penetration
 };
 
 /// Everything that the next step depends on, as numbers that may be written to a file. It fits worlds built by the same calls.

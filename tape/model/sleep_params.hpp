@@ -5,7 +5,7 @@ namespace tape {
 /// When tape that lies still on a body sleeps there.
 struct SleepParams {
   Real after = 0;
-  Real move = 0.05;
+  Real move = 0.005;
   int edges = 3;
   template <class F>
   void fields(F&& f) {

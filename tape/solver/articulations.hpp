@@ -22,29 +22,45 @@ struct QBlocks {
   int inertia;                  ///< place of the first piece of its inertia / dt^2, [count, count], row after row
   int first_link, link_blocks;  ///< its blocks of links
 };
-/// Drives of three coordinates, by how far these are ahead of where they go alone: a force proportional to that, up to limits.
-struct DriveBlock {
-  Vec3 stiffness, least, most;
-  TAPE_HD Vec3 force(const Vec3& ahead) const { return stiffness.cwiseProduct(ahead).cwiseMax(least).cwiseMin(most); }
-  TAPE_HD Real energy(const Vec3& ahead) const {
-    Real sum = 0;
-    for (int k = 0; k < 3; ++k) {
-      const Real f = force(ahead)[k];
-      if (stiffness[k] > 0) sum += f * (ahead[k] - f / (2 * stiffness[k]));
-    }
-    return sum;
+/// A LimitedSpring (tape/bodies/articulation.hpp), by how far the coordinates are ahead along it.
+struct Spring {
+  Real stiffness, least, most;
+  int articulation;
+  int along;  ///< place of the first piece of its direction, as many as the articulation has blocks
+  TAPE_HD Real force(Real ahead) const { return std::fmin(std::fmax(stiffness * ahead, least), most); }
+  TAPE_HD Real energy(Real ahead) const {
+    const Real f = force(ahead);
+    return stiffness > 0 ? f * (ahead - f / (2 * stiffness)) : 0;
   }
   /// Which limit is reached: -1 the least, 1 the most, 0 none.
-  TAPE_HD int side(const Vec3& ahead, int k) const {
-    const Real f = stiffness[k] * ahead[k];
-    return f < least[k] ? -1 : f > most[k] ? 1 : 0;
+  TAPE_HD int side(Real ahead) const { return stiffness * ahead < least ? -1 : stiffness * ahead > most ? 1 : 0; }
+  TAPE_HD Real slope(Real ahead) const { return side(ahead) == 0 ? stiffness : 0; }
+};
+/// All springs on the host, by how far all coordinates are ahead.
+struct HostSprings {
+  std::vector<Spring> springs;
+  Eigen::MatrixXd along;  ///< [coordinates of all articulations' blocks, springs]
+  /// Sum over springs of their direction times f(spring, how far ahead).
+  template <class F>
+  Eigen::VectorXd sum(const Eigen::VectorXd& ahead, const F& f) const {
+    return along * each(ahead, f);
   }
-  /// Stiffness where the limits are not reached.
-  TAPE_HD Vec3 slope(const Vec3& ahead) const {
-    Vec3 out = stiffness;
-    for (int k = 0; k < 3; ++k)
-      if (side(ahead, k) != 0) out[k] = 0;
+  template <class F>
+  Eigen::VectorXd each(const Eigen::VectorXd& ahead, const F& f) const {
+    Eigen::VectorXd out = along.transpose() * ahead;
+    for (std::size_t k = 0; k < springs.size(); ++k) out[static_cast<Eigen::Index>(k)] = f(springs[k], out[static_cast<Eigen::Index>(k)]);
     return out;
+  }
+  Eigen::VectorXd force(const Eigen::VectorXd& ahead) const {
+    return sum(ahead, [](const Spring& s, Real a) { return s.force(a); });
+  }
+  Eigen::VectorXd side(const Eigen::VectorXd& ahead) const {
+    return each(ahead, [](const Spring& s, Real a) { return Real(s.side(a)); });
+  }
+  /// What the springs' slopes where the coordinates are `ahead` make of a change of them.
+  Eigen::VectorXd stiffness(const Eigen::VectorXd& ahead, const Eigen::VectorXd& change) const {
+    const Eigen::VectorXd slope = each(ahead, [](const Spring& s, Real a) { return s.slope(a); });
+    return along * slope.cwiseProduct(along.transpose() * change);
   }
 };
 /// Where the blocks of unknowns stand in the system that is solved.
@@ -53,7 +69,9 @@ struct FoldView {
   Span<const LinkBlock> links;
   Span<const QBlocks> articulations;
   Span<const Mat3> jacobian, inertia;
-  Span<const DriveBlock> drives;  ///< [blocks of all articulations]
+  Span<const Spring> springs;    ///< of one articulation after the other
+  Span<const int> first_spring;  ///< [articulations + 1]
+  Span<const Vec3> along;
   TAPE_HD const LinkBlock* link(int block) const { return solved[block] < 0 ? &links[-1 - solved[block]] : nullptr; }
   TAPE_HD const QBlocks& of(const LinkBlock& l) const { return articulations[l.articulation]; }
 };
@@ -72,11 +90,11 @@ class Articulations {
   /// What holds for a step or a part of it.
   /// @param target  [articulations][m] where q is at its end if nothing on the tape side exerts a force
   void begin(const std::vector<ArticulationStep>& steps, const std::vector<Eigen::VectorXd>& target, Real dt);
-  EnergySum energy(Span<const Vec3> q) const;
-  /// Solves for the unknowns' Newton direction x, to the minimum of what is a parabola between the limits of the drives. The right side b,
+  EnergySum energy(Span<const Vec3> q);
+  /// Solves for the unknowns' Newton direction x, to the minimum of what is a parabola between the limits of the springs. The right side b,
   /// minus the gradient, becomes that by what is solved for: 0 at links.
   /// @param points   [n] m, position of each block of a strip
-  /// @param limited  false: as if the drives had no limits
+  /// @param limited  false: as if the springs had no limits
   LinearReport solve(LinearSolver& linear, const BlockMatrix& a, Span<const Vec3> points, Span<const Vec3> q, bool limited, Span<Vec3> b,
                      Span<Vec3> x);
   /// Coordinates [articulations][m] from blocks [q blocks].
@@ -90,6 +108,7 @@ class Articulations {
   };
   FoldView view(bool limited = true) const;
   void fold(const SlotGroup& group, int more, Folded& out) const;
+  void set_ahead(Span<const Vec3> q);
   void pass_limits(LinearSolver& linear, int inertia, LinearReport& report);
 
   std::vector<ArticulationPart> parts_;
@@ -99,8 +118,10 @@ class Articulations {
   Buffer<LinkBlock> links_;
   Buffer<QBlocks> articulations_;
   Buffer<Mat3> jacobian_, inertia_;
-  Buffer<DriveBlock> drives_, limitless_;
-  Buffer<Vec3> target_;
+  Buffer<Spring> springs_, limitless_;
+  Buffer<int> first_spring_;
+  Buffer<Vec3> along_, target_;
+  HostSprings host_springs_;
   Folded fixed_, contact_;
   BlockMatrix matrix_;
   Buffer<Vec3> points_, right_, solution_, ahead_;

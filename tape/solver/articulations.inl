@@ -50,7 +50,14 @@ struct Fold {
     return a ? Mat3(f.jacobian[a->jacobian + r].transpose() * right) : right;
   }
 };
-/// The inertia and the drives' stiffness, in the slots from `slot` on.
+/// How far an articulation's coordinates are ahead along a spring.
+TAPE_HD inline Real ahead_along(const FoldView& f, const Spring& spring, Span<const Vec3> ahead) {
+  const QBlocks& of = f.articulations[spring.articulation];
+  Real sum = 0;
+  for (int c = 0; c < of.count; ++c) sum += f.along[spring.along + c].dot(ahead[of.first + c]);
+  return sum;
+}
+/// The inertia and the springs' stiffness, in the slots from `slot` on.
 struct AddInertia {
   FoldView f;
   int slot;
@@ -65,27 +72,29 @@ struct AddInertia {
       for (int c = r; c < of.count; ++c, ++at) {
         keys[at] = block_key(of.solved + r, of.solved + c);
         values[at] = f.inertia[of.inertia + r * of.count + c];
-        if (c == r) values[at].diagonal() += f.drives[of.first + r].slope(ahead[of.first + r]);
+        for (int k = f.first_spring[articulation]; k < f.first_spring[articulation + 1]; ++k) {
+          const Spring& spring = f.springs[k];
+          values[at] += spring.slope(ahead_along(f, spring, ahead)) * f.along[spring.along + r] * f.along[spring.along + c].transpose();
+        }
       }
     }
   }
 };
 /// inertia (q - target) / dt^2 of one block of an articulation.
-TAPE_HD inline Vec3 inertia_pull(const FoldView& f, const QBlocks& part, Span<const Vec3> q, Span<const Vec3> target, int row) {
+TAPE_HD inline Vec3 inertia_pull(const FoldView& f, const QBlocks& part, Span<const Vec3> ahead, int row) {
   Vec3 sum = Vec3::Zero();
-  for (int c = 0; c < part.count; ++c) sum += f.inertia[part.inertia + row * part.count + c] * (q[part.first + c] - target[part.first + c]);
+  for (int c = 0; c < part.count; ++c) sum += f.inertia[part.inertia + row * part.count + c] * ahead[part.first + c];
   return sum;
 }
 struct Energy {
   FoldView f;
-  Span<const Vec3> q, target;
+  Span<const Vec3> ahead;
   TAPE_HD EnergySum operator()(int articulation) const {
     const QBlocks& part = f.articulations[articulation];
     Real sum = 0;
-    for (int r = 0; r < part.count; ++r) {
-      const Vec3 ahead = q[part.first + r] - target[part.first + r];
-      sum += ahead.dot(inertia_pull(f, part, q, target, r)) / 2 + f.drives[part.first + r].energy(ahead);
-    }
+    for (int r = 0; r < part.count; ++r) sum += ahead[part.first + r].dot(inertia_pull(f, part, ahead, r)) / 2;
+    for (int k = f.first_spring[articulation]; k < f.first_spring[articulation + 1]; ++k)
+      sum += f.springs[k].energy(ahead_along(f, f.springs[k], ahead));
     return {sum, sum};
   }
 };
@@ -101,13 +110,14 @@ struct Gather {
 struct FoldRight {
   FoldView f;
   int first_block;
-  Span<const Vec3> q, target;
+  Span<const Vec3> ahead;
   Span<Vec3> b;
   TAPE_HD void operator()(int articulation) const {
     const QBlocks& part = f.articulations[articulation];
     for (int r = 0; r < part.count; ++r) {
-      const int k = part.first + r;
-      Vec3 sum = -inertia_pull(f, part, q, target, r) - f.drives[k].force(q[k] - target[k]);
+      Vec3 sum = -inertia_pull(f, part, ahead, r);
+      for (int k = f.first_spring[articulation]; k < f.first_spring[articulation + 1]; ++k)
+        sum -= f.springs[k].force(ahead_along(f, f.springs[k], ahead)) * f.along[f.springs[k].along + r];
       for (int l = part.first_link; l < part.first_link + part.link_blocks; ++l)
         sum += f.jacobian[f.links[l].jacobian + r].transpose() * b[f.links[l].block];
       b[first_block + part.first + r] = sum;
@@ -135,7 +145,7 @@ struct Ahead {
   Span<Vec3> ahead;
   TAPE_HD void operator()(int k) const { ahead[k] = q[k] - target[k]; }
 };
-/// Coordinates of drives one after the other.
+/// Coordinates one after the other.
 inline Eigen::VectorXd in_line(const std::vector<Vec3>& v) {
   return v.empty() ? Eigen::VectorXd() : Eigen::Map<const Eigen::VectorXd>(v.front().data(), 3 * static_cast<Eigen::Index>(v.size()));
 }
@@ -144,28 +154,6 @@ inline std::vector<Vec3> in_blocks(const Eigen::VectorXd& v) {
   for (Eigen::Index k = 0; k < v.size(); k += 3) out.emplace_back(v.segment<3>(k));
   return out;
 }
-/// Drives on the host, by how far all coordinates are ahead.
-struct Drives {
-  std::vector<DriveBlock> blocks;
-  template <class F>
-  Eigen::VectorXd each(const Eigen::VectorXd& ahead, const F& f) const {
-    Eigen::VectorXd out(ahead.size());
-    for (std::size_t b = 0; b < blocks.size(); ++b) {
-      const auto k = 3 * static_cast<Eigen::Index>(b);
-      out.segment<3>(k) = f(blocks[b], Vec3(ahead.segment<3>(k)));
-    }
-    return out;
-  }
-  Eigen::VectorXd force(const Eigen::VectorXd& ahead) const {
-    return each(ahead, [](const DriveBlock& d, const Vec3& a) { return d.force(a); });
-  }
-  Eigen::VectorXd slope(const Eigen::VectorXd& ahead) const {
-    return each(ahead, [](const DriveBlock& d, const Vec3& a) { return d.slope(a); });
-  }
-  Eigen::VectorXd side(const Eigen::VectorXd& ahead) const {
-    return each(ahead, [](const DriveBlock& d, const Vec3& a) { return Vec3(d.side(a, 0), d.side(a, 1), d.side(a, 2)); });
-  }
-};
 /// Piece (row, column) of a matrix that beyond its end is like `out`.
 inline Mat3 piece(const Eigen::MatrixXd& m, int row, int column, Mat3 out = Mat3::Zero()) {
   for (int r = 0; r < 3 && 3 * row + r < m.rows(); ++r)
@@ -217,7 +205,9 @@ inline void Articulations::begin(const std::vector<ArticulationStep>& steps, con
   TAPE_CHECK(steps.size() == parts_.size() && target.size() == parts_.size());
   std::vector<Mat3> jacobian, inertia;
   std::vector<Vec3> to;
-  std::vector<DriveBlock> drives;
+  std::vector<Spring> springs;
+  std::vector<int> first_spring = {0};
+  std::vector<Vec3> along;
   for (std::size_t a = 0; a < parts_.size(); ++a) {
     const ArticulationPart& part = parts_[a];
     TAPE_CHECK(steps[a].inertia.rows() == part.coordinates && steps[a].inertia.cols() == part.coordinates);
@@ -232,22 +222,42 @@ inline void Articulations::begin(const std::vector<ArticulationStep>& steps, con
       for (int c = 0; c < part.blocks; ++c)
         inertia.push_back(articulations::piece(over_dt2, r, c, r == c ? Mat3(Mat3::Identity()) : Mat3(Mat3::Zero())));
       to.push_back(articulations::piece(target[a], r, 0).col(0));
-      const auto block = [&](const Eigen::VectorXd& v) { return Vec3(articulations::piece(v, r, 0).col(0)); };
-      drives.push_back({block(steps[a].drive / (dt * dt)), block(steps[a].least), block(steps[a].most)});
     }
+    for (const LimitedSpring& spring : steps[a].springs) {
+      TAPE_CHECK(spring.along.size() == part.coordinates);
+      springs.push_back({spring.stiffness / (dt * dt), spring.least, spring.most, static_cast<int>(a), static_cast<int>(along.size())});
+      for (int r = 0; r < part.blocks; ++r) along.emplace_back(articulations::piece(spring.along, r, 0).col(0));
+    }
+    first_spring.push_back(static_cast<int>(springs.size()));
   }
-  jacobian_.upload(jacobian), inertia_.upload(inertia), target_.upload(to), drives_.upload(drives);
+  jacobian_.upload(jacobian), inertia_.upload(inertia), target_.upload(to);
+  springs_.upload(springs), first_spring_.upload(first_spring), along_.upload(along);
+  host_springs_ = {springs, Eigen::MatrixXd::Zero(3 * q_blocks_, static_cast<Eigen::Index>(springs.size()))};
+  for (std::size_t k = 0; k < springs.size(); ++k) {
+    const ArticulationPart& part = parts_[static_cast<std::size_t>(springs[k].articulation)];
+    for (int r = 0; r < part.blocks; ++r)
+      host_springs_.along.block<3, 1>(3 * (part.first_block - first_block_ + r), static_cast<Eigen::Index>(k)) =
+          along[static_cast<std::size_t>(springs[k].along + r)];
+  }
   constexpr Real kNone = std::numeric_limits<Real>::infinity();
-  for (DriveBlock& drive : drives) drive.least.setConstant(-kNone), drive.most.setConstant(kNone);
-  limitless_.upload(drives);
+  for (Spring& spring : springs) spring.least = -kNone, spring.most = kNone;
+  limitless_.upload(springs);
 }
 
 inline FoldView Articulations::view(bool limited) const {
-  return {solved_.span(), links_.span(), articulations_.span(), jacobian_.span(), inertia_.span(), (limited ? drives_ : limitless_).span()};
+  return {solved_.span(),       links_.span(),   articulations_.span(),
+          jacobian_.span(),     inertia_.span(), (limited ? springs_ : limitless_).span(),
+          first_spring_.span(), along_.span()};
 }
 
-inline EnergySum Articulations::energy(Span<const Vec3> q) const {
-  return reduce(articulations_.size(), EnergySum{}, articulations::Energy{view(), q, target_.span()}, Plus{});
+inline void Articulations::set_ahead(Span<const Vec3> q) {
+  ahead_.resize(q_blocks_);
+  parallel_for(q_blocks_, articulations::Ahead{q, target_.span(), ahead_.span()});
+}
+
+inline EnergySum Articulations::energy(Span<const Vec3> q) {
+  set_ahead(q);
+  return reduce(articulations_.size(), EnergySum{}, articulations::Energy{view(), ahead_.span()}, Plus{});
 }
 
 /// The slots of a group in the solved system, and room for `more` after them.
@@ -266,8 +276,7 @@ inline LinearReport Articulations::solve(LinearSolver& linear, const BlockMatrix
   for (const ArticulationPart& part : parts_) more += part.blocks * (part.blocks + 1) / 2;
   fold(a.fixed(), more, fixed_);
   const int inertia = fixed_.keys.size() - more;
-  ahead_.resize(q_blocks_);
-  parallel_for(q_blocks_, articulations::Ahead{q, target_.span(), ahead_.span()});
+  set_ahead(q);
   parallel_for(articulations_.size(),
                articulations::AddInertia{view(limited), inertia, ahead_.span(), fixed_.keys.span(), fixed_.values.span()});
   fold(a.contact(), 0, contact_);
@@ -275,7 +284,7 @@ inline LinearReport Articulations::solve(LinearSolver& linear, const BlockMatrix
   matrix_.accumulate_fixed(fixed_.values.span());
   matrix_.set_contact_pattern(contact_.keys.span());
   matrix_.accumulate_contact(contact_.values.span());
-  parallel_for(articulations_.size(), articulations::FoldRight{view(limited), first_block_, q, target_.span(), b});
+  parallel_for(articulations_.size(), articulations::FoldRight{view(limited), first_block_, ahead_.span(), b});
   parallel_for(b.size, articulations::Gather{solved_.span(), b, right_.span()});
   parallel_for(b.size, articulations::Gather{solved_.span(), points, points_.span()});
   LinearReport report = linear.solve(matrix_, points_.span(), right_.span(), solution_.span());
@@ -284,33 +293,33 @@ inline LinearReport Articulations::solve(LinearSolver& linear, const BlockMatrix
   return report;
 }
 
-/// solution_ is the minimum of Newton's parabola, in which each drive goes on as it does where the unknowns are. Takes it to the minimum of
-/// what is a parabola between the drives' limits: Newton's method again, with an exact line search. The gradient without drives,
-/// rest = H x - b, needs no product with H: of an update d that solves (H + S) d = -(rest + f), H d = -f - S d - rest. Each update lowers
-/// the model, so that what kMost of them reach is a direction too.
+/// solution_ is the minimum of Newton's parabola, in which each spring goes on as it does where the unknowns are. Takes it to the minimum
+/// of what is a parabola between the springs' limits: Newton's method again, with an exact line search. The gradient without springs, rest
+/// = H x - b, needs no product with H: of an update d that solves (H + S) d = -(rest + f), H d = -f - S d - rest. Each update lowers the
+/// model, so that what kMost of them reach is a direction too.
 inline void Articulations::pass_limits(LinearSolver& linear, int inertia, LinearReport& report) {
   constexpr int kMost = 20;
   using Vector = Eigen::VectorXd;
-  const articulations::Drives drives{drives_.download()};
+  const HostSprings& springs = host_springs_;
   const Eigen::Index first = 3 * articulations_.download().front().solved, count = 3 * q_blocks_;
   Vector end = articulations::in_line(solution_.download()), x = Vector::Zero(end.size()),
          ahead = articulations::in_line(ahead_.download());
   Vector right = articulations::in_line(right_.download());
-  right.segment(first, count) += drives.force(ahead);
+  right.segment(first, count) += springs.force(ahead);
   Vector rest = -right;
   for (int k = 0; k < kMost; ++k) {
-    const Vector d = end - x, turn = d.segment(first, count), force = drives.force(ahead), slope = drives.slope(ahead);
-    if (drives.side(ahead + turn) == drives.side(ahead)) return;
+    const Vector d = end - x, turn = d.segment(first, count), force = springs.force(ahead);
+    if (springs.side(ahead + turn) == springs.side(ahead)) return;
     Vector bend = -rest;
-    bend.segment(first, count) -= force + slope.cwiseProduct(turn);
-    const auto rise = [&, at = d.dot(rest), by = d.dot(bend)](Real t) { return at + t * by + turn.dot(drives.force(ahead + t * turn)); };
+    bend.segment(first, count) -= force + springs.stiffness(ahead, turn);
+    const auto rise = [&, at = d.dot(rest), by = d.dot(bend)](Real t) { return at + t * by + turn.dot(springs.force(ahead + t * turn)); };
     if (!(rise(0) < 0)) break;  // as near to the minimum as the linear solver sees
     Real t = 1;
     if (rise(1) > 0)
       for (Real low = 0, high = 1; high - low > 1e-12; (rise(t) > 0 ? high : low) = t) t = (low + high) / 2;
     x += t * d, rest += t * bend, ahead += t * turn;
     Vector b = right;
-    b.segment(first, count) += drives.slope(ahead).cwiseProduct(x.segment(first, count)) - drives.force(ahead);
+    b.segment(first, count) += springs.stiffness(ahead, x.segment(first, count)) - springs.force(ahead);
     right_.upload(articulations::in_blocks(b)), ahead_.upload(articulations::in_blocks(ahead));
     parallel_for(articulations_.size(),
                  articulations::AddInertia{view(), inertia, ahead_.span(), fixed_.keys.span(), fixed_.values.span()});

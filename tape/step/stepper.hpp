@@ -74,7 +74,7 @@ struct StepReport {
   std::vector<BladePressure> blades;              ///< [Scene::blades] at the end
   std::optional<Real> exchange_residual;  ///< [1] momentum given to free robots that did not arrive, of what was; none: no such touched
   int unsettled_substeps = 0;             ///< of what simulates the articulations, those that it ended without having solved them
-  Real link_mismatch = 0;  ///< [m] farthest that a link stands from where what simulates the articulations has it, at the end
+  Real link_mismatch = 0;  ///< [m] farthest that a point of a link stands from where what simulates the articulations has it, at the end
   Real wall_ms = 0;
 };
 

@@ -121,10 +121,12 @@ TEST(Articulations, DirectionMindsTheLimitsThatDrivesComeToOnTheWay) {
     p.random.seed(seed);
     p.b = p.some(39, 1), p.q = p.some(8, 1), p.target = p.some(8, 1);
     p.b.segment(18, 9).setZero();
-    Eigen::VectorXd drive(8), least(8), most(8);
-    for (int k = 0; k < 8; ++k) drive[k] = 3 + k, least[k] = -100 * p.some(1, 1).cwiseAbs()(0), most[k] = 100 * p.some(1, 1).cwiseAbs()(0);
-    p.steps[1].drive = drive.tail(3), p.steps[1].least = least.tail(3), p.steps[1].most = most.tail(3);
-    p.steps[0].drive = drive.head(5), p.steps[0].least = least.head(5), p.steps[0].most = most.head(5);
+    for (int k = 0; k < 12; ++k) {  // of each coordinate, and four along some of all
+      const int part = k < 5 || k > 9 ? 0 : 1, size = part == 0 ? 5 : 3;
+      const Eigen::VectorXd along = k < 8 ? Eigen::VectorXd::Unit(size, k - 5 * part) : p.some(size, 1);
+      p.steps[static_cast<std::size_t>(part)].springs.push_back(
+          {along, 3.0 + k, -100 * p.some(1, 1).cwiseAbs()(0), 100 * p.some(1, 1).cwiseAbs()(0)});
+    }
     Articulations articulations(assembly());
     const SystemLayout layout = articulations.set_layout({.strips = {{9, 4, 2}}, .body_blocks = {0, 2, 4}}, 13);
     articulations.begin(p.steps, p.targets(), kDt);
@@ -140,12 +142,16 @@ TEST(Articulations, DirectionMindsTheLimitsThatDrivesComeToOnTheWay) {
     // The gradient of the model at its minimum is zero, whatever the way there.
     Eigen::VectorXd gradient = p.T.transpose() * (p.A * p.T * d - p.b);
     gradient.head(8) += p.M.topLeftCorner(8, 8) * (d.head(8) + p.q - p.target) / (kDt * kDt);
-    for (int k = 0; k < 8; ++k) {
-      const auto force = [&](Real ahead) { return std::clamp(drive[k] * ahead / (kDt * kDt), least[k], most[k]); };
-      const Real before = force(p.q[k] - p.target[k]), after = force(d[k] + p.q[k] - p.target[k]);
-      gradient[k] += after;
-      const auto limited = [&](Real f) { return f == least[k] || f == most[k]; };
-      passed += before != after && (limited(before) || limited(after)) ? 1 : 0;
+    for (const int part : {0, 1}) {
+      for (const LimitedSpring& spring : p.steps[static_cast<std::size_t>(part)].springs) {
+        const int first = 5 * part;
+        const auto ahead = [&](const Eigen::VectorXd& e) { return spring.along.dot(e.segment(first, spring.along.size())); };
+        const auto force = [&](Real by) { return std::clamp(spring.stiffness * by / (kDt * kDt), spring.least, spring.most); };
+        const Real before = force(ahead(p.q - p.target)), after = force(ahead(d.head(8) + p.q - p.target));
+        gradient.segment(first, spring.along.size()) += after * spring.along;
+        const auto limited = [&](Real f) { return f == spring.least || f == spring.most; };
+        passed += before != after && (limited(before) || limited(after)) ? 1 : 0;
+      }
     }
     EXPECT_LT(gradient.norm(), 1e-8 * p.b.norm()) << seed;
   }

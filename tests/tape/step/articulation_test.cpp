@@ -172,7 +172,7 @@ TEST(Articulation, ADriveAtItsLimitPushesOnWithThat) {
     MatrixXd J = MatrixXd::Zero(6, 1);
     J(2, 0) = 1;
     ArticulationStep step{VectorXd::Constant(1, kDt * v), MatrixXd::Constant(1, 1, kBare), {J}};
-    step.drive = VectorXd::Constant(1, 100 * kDt * kDt), step.least = VectorXd::Constant(1, -0.2), step.most = VectorXd::Constant(1, 0.2);
+    step.springs = {{VectorXd::Ones(1), 100 * kDt * kDt, -0.2, 0.2}};
     sim.exchange = {.articulations = {step}, .pinching = {}};
     const ArticulationReport report = sim.step().articulations[0];
     const Real ahead = report.q[0] - kDt * v, drive = std::clamp(100 * ahead, -0.2, 0.2);
